@@ -30,7 +30,7 @@ pub enum SearchError {
         bound: String,
     },
     /// A requested effect for which the inputs lack data.
-    #[error("there can be no {effect}: {reason}")]
+    #[error("the effect {effect} cannot be scored: {reason}")]
     Effect {
         /// The effect.
         effect: Effect,
@@ -38,7 +38,7 @@ pub enum SearchError {
         reason: String,
     },
     /// Two rings requested of a molecule that is not a ring.
-    #[error("{symmetry} lays two rings together, and this molecule is no ring for it: {reason}")]
+    #[error("{symmetry} docks two rings, and this molecule is not such a ring: {reason}")]
     Ring {
         /// The symmetry.
         symmetry: Symmetry,
@@ -120,7 +120,7 @@ pub enum SearchError {
     #[error("no pose has a finite score")]
     NoPose,
     /// No pose scores anything, so that errors have no scale.
-    #[error("no pose scores anything, so that errors have no scale")]
+    #[error("no pose scores anything, so errors have no scale")]
     NothingScores,
 }
 
@@ -158,7 +158,7 @@ impl SearchError {
                 let coarser = format!("--spacing {spacing}{resolution}{pass_length}");
                 if *shows_little {
                     format!(
-                        "allow more with --memory {needed}, or check for atoms or parts far from the rest; {coarser} would fit, and show little"
+                        "allow more with --memory {needed}, or check for atoms or parts far from the rest; {coarser} would fit, but shows little"
                     )
                 } else {
                     format!(

@@ -27,7 +27,7 @@ pub enum TableFault {
         present: String,
     },
     /// A column that means nothing here.
-    #[error("there is no use for a column `{0}`")]
+    #[error("column `{0}` is not known")]
     UnknownColumn(String),
     /// Two columns of one name.
     #[error("there are two columns `{0}`")]
@@ -191,7 +191,7 @@ mod tests {
                 1,
                 "there is no column `chain`; the header has weight",
             ),
-            ("#\nchain,mass\n", 2, "there is no use for a column `mass`"),
+            ("#\nchain,mass\n", 2, "column `mass` is not known"),
             ("chain,chain\n", 1, "there are two columns `chain`"),
             ("chain\nA,1\n", 2, "the row has 2 fields and the header 1"),
         ] {

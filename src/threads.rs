@@ -9,7 +9,7 @@ const STACK: usize = 8 << 20;
 
 /// Why work was not done: its threads could not be started.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the system did not start {}: {message}", counted(*count))]
+#[error("the system could not start {}: {message}", counted(*count))]
 pub struct ThreadsError {
     /// Threads that were wanted.
     count: usize,

@@ -63,7 +63,7 @@ fn likely_residues_in_contact_count_their_log_odds() {
     fs::write(folder.path().join("p.csv"), table).unwrap();
     let found = dock(
         folder.path(),
-        "--interface-receptor p.csv --interface-weight 7",
+        "--interface-receptor p.csv --config terms.interface_weight=7",
     );
     let (receptor, ligand) = (atoms("receptor"), atoms("ligand"));
     let logit = |p: f64| (p / (1.0 - p)).ln();

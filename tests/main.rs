@@ -15,6 +15,7 @@ mod bad_input;
 mod batch;
 mod collide;
 mod collide_exact;
+mod command_line;
 mod config;
 mod crash;
 mod dock_run;

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import keyword
 import os
@@ -67,19 +68,34 @@ def words_of(options: dict[str, Any]) -> list[str]:
     """Options as words of a command line.
 
     `True` is a flag, `False` and `None` leave the option out, and a list is joined by commas. Names may end in `_`
-    where Python has a word of that name.
+    where Python has a word of that name. Weights and potentials become lines of `--config`.
 
     >>> words_of({"rotations": 600, "no_cluster": True, "effects": ["shape", "contact"], "native": None})
     ['--rotations=600', '--no-cluster', '--effects=shape,contact']
+    >>> words_of({"config": ["lab.toml", "pair.toml"], "contact_weight": 1.5})
+    ['--config=lab.toml', '--config=pair.toml', '--config=terms.contact_weight=1.5']
     """
     words = []
     for name, value in options.items():
         option = "--" + name.rstrip("_").replace("_", "-")
+        if value is None or value is False:
+            continue
         if value is True:
             words.append(option)
-        elif value is not None and value is not False:
+        elif name in _of_files():
+            line = value if isinstance(value, (int, float)) else json.dumps(_text(value))
+            words.append(f"--config={_of_files()[name]}.{name}={line}")
+        elif name == "config" and isinstance(value, (list, tuple)):
+            words += [f"{option}={_text(file)}" for file in value]
+        else:
             words.append(f"{option}={_text(value)}")
     return words
+
+
+@functools.cache
+def _of_files() -> dict[str, str]:
+    """The options that files alone give, with their tables."""
+    return {option["name"]: option["subject"] for option in _knotdock.options() if option["of_files"]}
 
 
 def run_command(

@@ -18,7 +18,7 @@ pub fn bad_input(py: Python<'_>, message: impl ToString, remedy: &str) -> PyErr 
 
 /// The exception of a fault of the program.
 pub fn fault(py: Python<'_>) -> PyErr {
-    let message = "knotdock failed, which is a fault of the program";
+    let message = "knotdock failed: this is a bug";
     let remedy = "report it with the call and its files";
     made(py, false, (message, None, None, Some(remedy)))
 }

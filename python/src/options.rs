@@ -6,7 +6,8 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 /// The options of `knotdock dock`, in their order: `name`, `kind` (`flag`, `list`, `file`, `number`, `choice` or
-/// `text`), `values` of a choice, `default` as text or None, `subject` and `help`.
+/// `text`), `values` of a choice, `default` as text or None, `subject`, `help`, and whether it
+/// is one `of_files`, which no word of a command line gives.
 #[pyfunction]
 pub fn options(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     definitions()
@@ -49,5 +50,6 @@ fn entry<'py>(py: Python<'py>, option: &Definition) -> PyResult<Bound<'py, PyDic
     entry.set_item("default", default.filter(|_| !option.is_flag()))?;
     entry.set_item("subject", option.subject())?;
     entry.set_item("help", option.help())?;
+    entry.set_item("of_files", option.is_of_files())?;
     Ok(entry)
 }

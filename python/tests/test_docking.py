@@ -140,7 +140,7 @@ def test_a_panic_is_an_exception(helices):
     said = done.stdout.splitlines()
     if len(said) == 1:
         pytest.skip("built without debug assertions")
-    assert said == ["knotdock failed, which is a fault of the program | report it with the call and its files", "True"]
+    assert said == ["knotdock failed: this is a bug | report it with the call and its files", "True"]
 
 
 def test_other_threads_of_python_run_meanwhile(helices, options):

@@ -36,8 +36,10 @@ TAIL = '''
 class DockArguments(DockOptions, total=False):
     """Options of the command line that are not of every run."""
 
-    config: str | os.PathLike[str]
-    """Options from a file in TOML."""
+    preset: Literal["fast", "default", "thorough", "shape"]
+    """Options by a name."""
+    config: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+    """Options from files in TOML, or from lines such as `terms.contact_weight=1`; later ones win."""
     native: Any
     """The known complex, as inputs of `dock`."""
     native_receptor: Any

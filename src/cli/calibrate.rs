@@ -35,11 +35,9 @@ impl Calibrate {
                 .remedy("name a file with -o")
         })?;
         if named && path.is_file() && !is_ours(&path) {
-            return Err(
-                Failure::input("the file is already there and holds no cost model")
-                    .at(&path)
-                    .remedy("choose another name"),
-            );
+            return Err(Failure::input("this file exists and is not a cost model")
+                .at(&path)
+                .remedy("choose another name"));
         }
         let threads = self.threads.count();
         let progress = console.progress();
@@ -47,10 +45,8 @@ impl Calibrate {
             .map_err(|error| Failure::other(&error).remedy(error.remedy()))?;
         drop(progress);
         if !model.is_sound() {
-            return Err(
-                Failure::other("the times that were measured make no cost model")
-                    .remedy("try again while the machine has nothing else to do"),
-            );
+            return Err(Failure::other("no cost model fits the measured times")
+                .remedy("try again while the machine has nothing else to do"));
         }
         write(&path, &model, threads)?;
         let built_in = CostModel::BUILT_IN;
@@ -113,7 +109,7 @@ pub fn cost_model(console: Console) -> (CostModel, String) {
         Ok(None) => built_in(),
         Err(error) => {
             console.warn(format!(
-                "{error}; the built-in one is used until `knotdock calibrate` writes another"
+                "{error}; the built-in cost model is used until `knotdock calibrate` writes another"
             ));
             built_in()
         }

@@ -56,7 +56,7 @@ pub struct Collide {
     #[arg(long, value_enum, default_value_t = MethodName::Auto)]
     method: MethodName,
     /// The most Fourier modes that are summed, with their conjugates.
-    #[arg(long, value_name = "M", default_value_t = Ways::default().modes, value_parser = count(1..=1_000_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = Ways::default().modes, value_parser = count(1..=1_000_000))]
     modes: usize,
     /// What to compute beside the verdict; with commas between.
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Compute::Distance, Compute::Volume, Compute::Force])]
@@ -200,7 +200,7 @@ impl Collide {
         {
             return Err(Failure::input("the same file is named twice")
                 .at(one)
-                .remedy("give each file to write a name of its own"));
+                .remedy("give each output file its own name"));
         }
         for file in [&self.output, &self.report].into_iter().flatten() {
             check_output(file, read.iter().copied(), self.force)?;

@@ -23,18 +23,20 @@ use crate::cli::inputs::request::Request;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
-/// Dock a ligand to a receptor and rank the poses: two molecules, or two meshes in one unit of length.
+/// Dock a ligand to a receptor and rank the poses.
 ///
-/// Writes report.html to look at, poses.csv, top/rank_0001.pdb ... (of meshes .obj) and run.json into a directory of
-/// the run. The same input
-/// and options give the same bytes for any number of threads, except with --budget.
+/// Both are molecules, or both are meshes in one unit of length, in which all lengths are then given. The directory of
+/// the run gets report.html to look at, poses.csv, top/rank_0001.pdb and on (.obj of meshes) and run.json. The same
+/// input and options give the same bytes for any number of threads, except with --budget.
 #[derive(Args, Clone, Debug)]
 pub struct Dock {
-    /// What stays: a molecule (.pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names,
-    /// FILE:H:1-120,L residues too) or a mesh (.stl, .obj, .ply or .off).
+    /// What stays: a molecule (.pdb, .cif, also .gz; FILE:H,L picks chains) or a mesh (.stl, .obj).
+    ///
+    /// Molecules: .pdb, .ent or .cif, each also .gz. FILE:H,L picks chains by the author's names, FILE:H:1-120,L
+    /// residues too. Meshes: .stl, .obj, .ply or .off.
     #[arg(required_unless_present = "rerun", value_name = "RECEPTOR")]
     receptor: Option<String>,
-    /// What moves, likewise and of the same kind.
+    /// What moves, of the same kind.
     #[arg(
         required_unless_present_any = ["rerun", "symmetry", "config"],
         conflicts_with = "symmetry",
@@ -47,20 +49,24 @@ pub struct Dock {
     /// Replace the run in the directory, once the new one is done.
     #[arg(long)]
     force: bool,
-    /// Repeat the run that wrote this run.json: its inputs, checked by SHA-256, and its options.
+    /// Repeat the run that wrote this run.json.
+    ///
+    /// Its inputs are checked by SHA-256, and its options are taken.
     #[arg(long, value_name = "RUN.JSON")]
     rerun: Option<PathBuf>,
     #[command(flatten)]
     options: OptionArguments<OfDock>,
-    /// Take the cheapest tolerance and spacing, and double precision where it needs that, whose error is expected to
-    /// be within X: rms over the best grid poses, as a share of the best score.
-    #[arg(long, value_name = "X", value_parser = above_zero, help_heading = WITHIN)]
+    /// Choose tolerance, spacing and precision for an error within this share of the best score.
+    ///
+    /// The cheapest setting is taken whose error is expected to be within it: rms over the best poses of the grid.
+    #[arg(long, value_name = "SHARE", value_parser = above_zero, help_heading = WITHIN)]
     #[arg(conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry")]
     accuracy: Option<f64>,
-    /// End within a time on the clock, such as 5s or 2min, reading and writing included. As many rotations are
-    /// planned as are expected to fit, but no more than 56,250. Where the machine is slower than expected the search
-    /// stops earlier, so that the same call need not give the same bytes. run.json records where: `--rerun` of it gives the
-    /// same bytes. `knotdock calibrate` measures how fast
+    /// End within a time on the clock, such as 5s or 2min.
+    ///
+    /// Reading and writing are included. As many rotations are planned as are expected to fit, at most 56,250. If the
+    /// machine is slower than expected, the search stops earlier, so the same call need not give the same bytes.
+    /// run.json records where it stopped: `--rerun` of it gives the same bytes. `knotdock calibrate` measures how fast
     /// this machine is.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
     budget: Option<f64>,
@@ -68,6 +74,47 @@ pub struct Dock {
     conformations: ConformationArguments,
     #[command(flatten)]
     native: NativeArguments,
+}
+
+/// Arguments that `knotdock dock -h` shows; `--help` shows all.
+const IN_BRIEF: [&str; 10] = [
+    "receptor",
+    "ligand",
+    "output",
+    "preset",
+    "active_receptor",
+    "active_ligand",
+    "restraints",
+    "symmetry",
+    "threads",
+    "native",
+];
+
+/// What stands below the options of `knotdock dock`.
+const EXAMPLES: &str = "\
+Examples:
+  knotdock dock receptor.pdb ligand.cif.gz
+  knotdock dock antibody.pdb:H,L antigen.pdb:A -o run
+  knotdock dock enzyme.pdb inhibitor.pdb --active-receptor A:57,189-195
+  knotdock dock subunit.pdb --symmetry C3
+  knotdock dock block.stl peg.stl
+
+`knotdock dock --help` lists all options, in groups.";
+
+/// A command whose `-h` shows of the options of a run only those that most people need.
+pub fn in_brief(command: Command) -> Command {
+    let is_dock = command.get_name() == "dock";
+    let command = command.mut_args(|argument| {
+        let name = argument.get_id().as_str();
+        let is_option = is_dock || option_named(name).is_some();
+        let shown = IN_BRIEF.contains(&name) || !is_option;
+        argument.hide_short_help(!shown)
+    });
+    if is_dock {
+        command.after_help(EXAMPLES)
+    } else {
+        command
+    }
 }
 
 /// What a command line comes to.
@@ -149,8 +196,10 @@ impl Dock {
         // Of a ring the ligand is another copy of the receptor.
         let ligand = match symmetry {
             Some(_) if self.ligand.is_some() => {
-                return Err(Failure::input("a ring is made of copies of one molecule")
-                    .remedy("leave LIGAND out, or `symmetry` of the file of options"));
+                return Err(Failure::input(
+                    "--symmetry docks copies of RECEPTOR, and LIGAND is given too",
+                )
+                .remedy("leave LIGAND out, or remove `symmetry` from the file of options"));
             }
             Some(_) => self.receptor.as_ref(),
             None => self.ligand.as_ref(),
@@ -264,13 +313,13 @@ fn named_after(sides: &[Vec<Conformation>; 2]) -> PathBuf {
 /// Refuses options for which nothing can be chosen by an error or a time.
 fn check_wanted(options: &DockOptions) -> Result<(), Failure> {
     if options.search.engine == EngineChoice::Gpu {
-        let error = "--accuracy and --budget rest on what the CPU takes, and --engine gpu is given";
+        let error = "--accuracy and --budget use the times of the CPU, and --engine gpu is given";
         return Err(Failure::input(error)
             .remedy("set --rotations, --tolerance and --spacing, or dock with --engine cpu"));
     }
     if options.search.symmetry.is_some() {
         return Err(
-            Failure::input("--accuracy and --budget know nothing of rings")
+            Failure::input("--accuracy and --budget do not work with --symmetry")
                 .remedy("set --rotations, --tolerance and --spacing"),
         );
     }
@@ -291,7 +340,7 @@ mod tests {
             let words = ["dock", "--rerun=run.json", "-o", "out", "--force", word];
             command.try_get_matches_from(words).map(drop)
         };
-        for option in definitions() {
+        for option in definitions().iter().filter(|one| !one.is_of_files()) {
             let value = match option.name() {
                 "sample_weights" => "unit",
                 "sampler" => "bi",

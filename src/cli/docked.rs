@@ -17,7 +17,7 @@ use crate::output::tables::fields::Column;
 use crate::output::tables::interface_shares::{INTERFACE, write_shares};
 use crate::output::tables::poses::PoseRow;
 use crate::output::tables::quality;
-use crate::output::tables::report::{BEST, best_clusters, counted, firsts};
+use crate::output::tables::report::{BEST, best_clusters, firsts};
 use crate::output::tables::restraints;
 use crate::output::tables::run_table::{RunTable, pose_rows};
 use crate::report::{MAX_ROWS, RunReport, Viewer};
@@ -26,6 +26,7 @@ use serde_json::{Value, json};
 use crate::cli::arguments::machine::machine;
 use crate::cli::arguments::native::measure;
 use crate::cli::docking::Docking;
+use crate::cli::messages::brief::{cost_text, next_text};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{error_warning, few_rotations_warning, outcome_text};
 use crate::cli::messages::failure::Failure;
@@ -239,45 +240,39 @@ impl Docked {
         })
     }
 
-    /// Reports the run: effects, errors, times and the best clusters.
+    /// Reports the run: the best clusters, what they cost, and what to do next; before them, where the console wants
+    /// details, effects, errors and times.
     fn report(&self, console: Console) {
         let (docking, outcome) = (&self.docking, &self.outcome);
         let plan = &docking.prepared.plan;
-        console.say(format!("\n{}", outcome_text(plan, outcome)));
+        console.detail(format!("\n{}", outcome_text(plan, outcome)));
         console.detail(format!("\n{}", timings_text(outcome)));
+        if let Some(chosen) = &docking.chosen {
+            let stages = outcome.timing.iter();
+            console.detail(format!(
+                "The search was expected to take {:.1} s, and took {:.1} s",
+                chosen.predicted_seconds,
+                stages.map(|stage| stage.wall_seconds).sum::<f64>()
+            ));
+        }
+        console.say(format!(
+            "\n{}\n",
+            best_clusters(&outcome.poses, &self.quality)
+        ));
         if let Some(warning) = error_warning(plan, outcome) {
             console.warn(warning);
         }
         if let Some(warning) = few_rotations_warning(outcome, docking.deadline.is_some()) {
             console.warn(warning);
         }
-        if let Some(chosen) = &docking.chosen {
-            let stages = outcome.timing.iter();
-            console.say(format!(
-                "The search was expected to take {:.1} s, and took {:.1} s",
-                chosen.predicted_seconds,
-                stages.map(|stage| stage.wall_seconds).sum::<f64>()
-            ));
-            if let Some(budget) = chosen.budget_seconds {
-                console.say(format!(
-                    "The whole run took {:.1} s of {budget} s",
-                    docking.clock.seconds()
-                ));
-            }
-        }
-        console.say(format!(
-            "\n{}",
-            best_clusters(&outcome.poses, &self.quality)
+        console.say(cost_text(docking, outcome));
+        let output = &docking.request.options.output;
+        console.say(next_text(
+            &docking.directory,
+            outcome,
+            output.write_top,
+            !output.no_report,
         ));
-        console.say(format!(
-            "\n{} in {}",
-            counted(outcome.poses.len(), "row"),
-            docking.directory.join("poses.csv").display()
-        ));
-        if !docking.request.options.output.no_report {
-            let report = docking.directory.join(REPORT);
-            console.say(format!("To look at them: {}", report.display()));
-        }
     }
 }
 

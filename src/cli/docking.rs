@@ -6,6 +6,7 @@ use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 use crate::dock::memory::process;
 use crate::dock::outcome::DockOutcome;
 use crate::dock::pair::{PreparedPair, Preparer};
+use crate::dock::plan::DockPlan;
 use crate::evaluate::Evaluator;
 use crate::options::{Precision, SharpChoice};
 use crate::output::records::manifest::{EffectTime, Timing};
@@ -17,8 +18,9 @@ use crate::tradeoff::cost_model::{CostModel, Workload};
 use crate::cli::arguments::native::{NativeFiles, announce};
 use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::Request;
+use crate::cli::messages::brief::{expected_text, score_text};
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{assumed, known_text, regions_text};
+use crate::cli::messages::dock::{assumed, regions_text};
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::finish_before_reading;
 
@@ -54,8 +56,8 @@ impl Docking {
         if let Some(evaluator) = &evaluator {
             announce(evaluator, console);
         }
-        let (prepared, chosen, deadline) = if wanted == Wanted::default() {
-            (request.plan(console)?, None, None)
+        let (prepared, chosen, deadline, model) = if wanted == Wanted::default() {
+            (request.plan(console)?, None, None, None)
         } else {
             let (model, source) = cost_model(console);
             let (prepared, chosen) = plan_within(wanted, (&model, &source), &mut request, console)?;
@@ -64,30 +66,31 @@ impl Docking {
                 .and_then(|budget| Duration::try_from_secs_f64(budget).ok())
                 .and_then(|budget| clock.monotonic.checked_add(budget));
             let deadline = end.map(|end| deadline(&model, &prepared.plan, end));
-            (prepared, Some(chosen), deadline)
+            (prepared, Some(chosen), deadline, Some(model))
         };
         let plan = &prepared.plan;
-        console.say(format!("\n{plan}"));
         let sides = arrangement.sides();
+        console.detail(format!("\n{plan}"));
         for (side, count) in sides.iter().zip(plan.unresolved()) {
             if count > 0 {
                 console.warn(format!(
-                    "{count} balls of the {side} are too small for a resolution of {} {}, which leaves less than a tenth of their overlap",
+                    "{count} balls of the {side} are too small for a resolution of {} {}: less than a tenth of their overlap is left",
                     request.options.kernel.resolution, plan.unit
                 ));
             }
         }
-        for text in known_text(sides, &plan.restraints) {
-            console.say(text);
-        }
         for text in regions_text(sides, &plan.regions) {
-            console.say(text);
+            console.detail(text);
         }
         for (side, labels) in sides.iter().zip(&plan.labels) {
             if let Some(text) = assumed(side, labels, plan) {
-                console.say(text);
+                console.detail(text);
             }
         }
+        console.say(score_text(plan, sides));
+        let model = model.unwrap_or_else(|| cost_model(console).0);
+        let seconds = seconds_of(plan, &model);
+        console.say(expected_text(plan, seconds, chosen.as_ref()));
         Ok(Self {
             request,
             directory,
@@ -107,8 +110,7 @@ impl Docking {
 
     /// Seconds that the search is expected to take on this machine.
     pub fn expected_seconds(&self, model: &CostModel) -> f64 {
-        let plan = &self.prepared.plan;
-        model.seconds(&Workload::of(plan), plan.rotations, plan.in_flight())
+        seconds_of(&self.prepared.plan, model)
     }
 
     /// The directory of the run, if it holds another run that is not to be replaced.
@@ -139,10 +141,15 @@ impl Docking {
     }
 }
 
+/// Seconds that a search is expected to take.
+fn seconds_of(plan: &DockPlan, model: &CostModel) -> f64 {
+    model.seconds(&Workload::of(plan), plan.rotations, plan.in_flight())
+}
+
 /// The refusal of a directory that holds something else, which `force` would replace.
 pub fn held_by_another(directory: &Path, force: &str) -> Failure {
     Failure::input(
-        "the directory holds a run of other inputs or options, or by another version, or only part of this one",
+        "the directory holds another run: of other inputs or options, by another version, or unfinished",
     )
     .at(directory)
     .remedy(format!("pass {force} to replace it, or choose another directory with -o"))
@@ -174,7 +181,7 @@ fn plan_within(
     let error = chosen
         .predicted_error
         .map(|error| format!(" and an error of {error:.1e} of the best score"));
-    console.say(format!(
+    console.detail(format!(
         "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
         options.search.rotations,
         options.kernel.tolerance,

@@ -184,7 +184,7 @@ impl Placed {
     /// Each pose with its molecules.
     fn pairs(&self) -> Result<Vec<PosedPair<'_>>, Failure> {
         let Pair::Molecules(molecules) = self.bodies.pair() else {
-            return Err(Failure::input("these are no molecules"));
+            return Err(Failure::input("these are meshes, not molecules"));
         };
         let posed = self.rows.iter().map(|row| PosedPair {
             molecules,

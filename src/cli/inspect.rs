@@ -110,7 +110,7 @@ impl Inspect {
             .as_ref()
             .is_some_and(|atoms| is_same(atoms, file))
         {
-            return Err(Failure::input("--atoms and --write name one file")
+            return Err(Failure::input("--atoms and --write name the same file")
                 .at(file)
                 .remedy("give each a name of its own"));
         }
@@ -200,7 +200,7 @@ fn written_format(file: &Path) -> Result<Format, Failure> {
     molecule_file::format_of_name(file).ok_or_else(|| {
         Failure::input("the name of the structure to write ends neither in .pdb nor in .cif")
             .at(file)
-            .remedy("name it so: the ending says the format")
+            .remedy("end the name in .pdb or .cif")
     })
 }
 

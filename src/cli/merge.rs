@@ -34,7 +34,7 @@ impl Merge {
             (None, [one]) => one.clone(),
             (None, _) => {
                 return Err(Failure::input(
-                    "several directories are merged, and none is named for the tables",
+                    "several directories are given, and it is not known where the merged tables go",
                 )
                 .remedy("name one with -o"));
             }

@@ -9,6 +9,7 @@ mod batch;
 mod calibrate;
 mod calls;
 mod collide;
+mod completions;
 mod dock;
 mod docked;
 mod docking;
@@ -22,6 +23,7 @@ mod merge;
 mod messages;
 mod morph;
 mod obstacle;
+mod preset;
 mod refine;
 mod refining;
 mod report;
@@ -31,11 +33,11 @@ mod se3;
 mod tradeoff;
 
 use std::borrow::Cow;
-use std::error::Error;
 use std::ffi::OsString;
+use std::sync::LazyLock;
 
-use crate::options::PotentialFileError;
 use crate::options::text::first_paragraph;
+use crate::output::records::program::{FEATURES, VERSION_WITH_COMMIT};
 use crate::threads;
 use arguments::program::{ProgramArguments, with_negative_numbers};
 pub use calls::{call, read_molecule};
@@ -43,6 +45,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use messages::console::Console;
 pub use messages::failure::Failure;
+use messages::library_errors::fault_of_named_file;
 pub use messages::listener::Listener;
 use messages::shown::shown;
 use messages::suggestions;
@@ -55,7 +58,7 @@ use crate::system_limits::report_as_json;
 /// Method: Behandish & Ilies, Computer-Aided Design 70 (2016) 100-115. Lengths are in Å, of meshes in the unit of
 /// their files, angles in degrees. Exit codes: 0 done, 2 bad input, 1 any other failure.
 #[derive(Debug, Parser)]
-#[command(name = "knotdock", version = version())]
+#[command(name = "knotdock", version = VERSION_WITH_COMMIT, long_version = long_version())]
 struct Cli {
     #[command(subcommand)]
     command: Command,
@@ -82,11 +85,26 @@ enum Command {
     Collide(Box<collide::Collide>),
     Tradeoff(Box<tradeoff::TradeoffCommand>),
     Calibrate(calibrate::Calibrate),
+    Preset(preset::PresetCommand),
+    Completions(completions::Completions),
+    Man(completions::ManPages),
 }
 
-fn version() -> &'static str {
-    use crate::output::records::program::VERSION_WITH_COMMIT;
-    VERSION_WITH_COMMIT
+/// Version, commit and features, as `--version` shows them.
+fn long_version() -> &'static str {
+    static TEXT: LazyLock<String> = LazyLock::new(|| {
+        let features: Vec<&str> = FEATURES
+            .iter()
+            .filter(|(_, on)| *on)
+            .map(|(name, _)| *name)
+            .collect();
+        let features = match features.join(", ") {
+            none if none.is_empty() => "none".to_owned(),
+            names => names,
+        };
+        format!("{VERSION_WITH_COMMIT}\nfeatures: {features}")
+    });
+    &TEXT
 }
 
 /// Runs the program on arguments, of which the first is the name it was called by; its exit code.
@@ -133,6 +151,9 @@ fn run(command: Command, console: Console) -> Result<u8, Failure> {
         Command::Collide(command) => command.run(console),
         Command::Tradeoff(command) => command.run(console),
         Command::Calibrate(command) => command.run(console),
+        Command::Preset(command) => command.run(console),
+        Command::Completions(shell) => shell.run(command_line(), console),
+        Command::Man(pages) => pages.run(command_line(), console),
     };
     done.map(|()| 0)
 }
@@ -145,11 +166,17 @@ fn wants_json(arguments: &[OsString]) -> bool {
         .any(|argument| argument == "--json")
 }
 
-/// The command line as read.
-fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
+/// The definition of the command line.
+fn command_line() -> clap::Command {
     Cli::command()
         .mut_subcommands(with_negative_numbers)
+        .mut_subcommands(dock::in_brief)
         .mut_subcommand("dock", dock::refusing_recorded)
+}
+
+/// The command line as read.
+fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
+    command_line()
         .try_get_matches_from(arguments)
         .and_then(|matches| Cli::from_arg_matches(&matches))
         .map_err(suggestions::explained)
@@ -173,12 +200,10 @@ fn escaped(error: clap::Error, arguments: &[OsString]) -> clap::Error {
         OsString::from(shown(&argument).as_ref())
     });
     let escaped: Vec<OsString> = escaped.collect();
-    // A table of energies is read as its option is: its file goes by its own name alone.
-    let is_of_potential = error
-        .source()
-        .is_some_and(|source| source.is::<PotentialFileError>());
+    // A file that an option names is read as the option is: it goes by its own name alone.
+    let is_of_file = fault_of_named_file(&error).is_some();
     match parsed(&escaped) {
-        Err(again) if again.kind() == error.kind() && !is_of_potential => again,
+        Err(again) if again.kind() == error.kind() && !is_of_file => again,
         _ => error,
     }
 }
@@ -193,7 +218,7 @@ fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> u8 {
         json,
         ..Console::default()
     };
-    if potential_file(error).is_some() || (json && !for_information) {
+    if fault_of_named_file(error).is_some() || (json && !for_information) {
         console.fail(&unparsed(error));
     } else if are_plain(arguments) {
         // A terminal that is gone needs no message.
@@ -204,15 +229,10 @@ fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> u8 {
     if for_information { 0 } else { 2 }
 }
 
-/// The error of a table of energies that an option names: it is read as the option is.
-fn potential_file(error: &clap::Error) -> Option<&PotentialFileError> {
-    error.source()?.downcast_ref()
-}
-
 /// A command line that is wrong, as a failure.
 fn unparsed(error: &clap::Error) -> Failure {
-    match potential_file(error) {
-        Some(error) => error.clone().into(),
+    match fault_of_named_file(error) {
+        Some(failure) => failure,
         None => {
             let remedy = suggestions::suggested(error).unwrap_or_else(|| {
                 "see `knotdock --help` and `knotdock COMMAND --help`".to_owned()

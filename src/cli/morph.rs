@@ -39,7 +39,7 @@ enum Operation {
     /// Grow a solid by a distance, or shrink it by one below zero.
     Offset {
         /// The solid.
-        #[arg(value_name = "A")]
+        #[arg(value_name = "SOLID")]
         first: String,
         /// Distance, in the unit of the file.
         #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
@@ -58,7 +58,7 @@ enum Operation {
     /// All that a solid passes on a path of poses, geodesics between them.
     Sweep {
         /// The solid.
-        #[arg(value_name = "A")]
+        #[arg(value_name = "SOLID")]
         first: String,
         /// Poses in order: a CSV file with columns qw, qx, qy, qz, tx, ty, tz, or - for standard input.
         #[arg(long, value_name = "FILE")]
@@ -95,7 +95,7 @@ struct Pair {
 #[derive(Args, Debug)]
 struct Poses {
     /// The solid.
-    #[arg(value_name = "A")]
+    #[arg(value_name = "SOLID")]
     first: String,
     /// Poses: a CSV file with columns qw, qx, qy, qz, tx, ty, tz, or - for standard input.
     #[arg(long, value_name = "FILE")]
@@ -113,7 +113,7 @@ struct Common {
     /// Nodes of the grid on which complements are sampled by balls, as 2^15 or 32768.
     #[arg(
         long,
-        value_name = "M",
+        value_name = "COUNT",
         default_value = "2^15",
         help_heading = "Solids"
     )]

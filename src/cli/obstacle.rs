@@ -49,7 +49,7 @@ pub struct Obstacle {
     )]
     rotation: Option<String>,
     /// Many rotations, spread evenly: -o is then a table of volumes and free regions, a row a rotation.
-    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with_all = ["surface", "volume_grid", "picture", "report", "set", "reduce"])]
+    #[arg(long, value_name = "COUNT", value_parser = at_least_one, conflicts_with_all = ["surface", "volume_grid", "picture", "report", "set", "reduce"])]
     rotations: Option<usize>,
     /// Length added to each radius, another slice of the lifted obstacle: a clearance, or, below zero, an overlap that
     /// is allowed.
@@ -65,7 +65,7 @@ pub struct Obstacle {
     reduce: bool,
     /// Compute the gap function on a grid of N points an axis by each way too, with residuals and times; N is rounded up
     /// to a multiple of four.
-    #[arg(long, value_name = "N", value_parser = at_least_one, conflicts_with = "rotations")]
+    #[arg(long, value_name = "COUNT", value_parser = at_least_one, conflicts_with = "rotations")]
     gap_grid: Option<usize>,
     #[command(flatten)]
     output: SolidOutput,

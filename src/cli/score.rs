@@ -42,7 +42,7 @@ pub struct Score {
     #[arg(long, value_name = "QW,QX,QY,QZ,TX,TY,TZ", allow_hyphen_values = true)]
     pose: String,
     /// A number of modes that the table is to contain.
-    #[arg(long, value_name = "M", value_parser = at_least_one)]
+    #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
     modes: Option<usize>,
     /// Which modes come first.
     #[arg(long, value_enum, default_value_t = Order::LowFrequency)]

@@ -45,7 +45,7 @@ enum Question {
         #[arg(value_name = "Q", allow_hyphen_values = true)]
         second: String,
         /// Steps: one pose more is written.
-        #[arg(long, value_name = "N", default_value_t = 10, value_parser = at_least_one)]
+        #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = at_least_one)]
         steps: usize,
         #[command(flatten)]
         output: PoseOutput,
@@ -59,7 +59,7 @@ enum Question {
         #[arg(long, value_name = "RADIUS", value_parser = not_negative)]
         radius: f64,
         /// Number of poses.
-        #[arg(long, value_name = "N", default_value_t = 100, value_parser = at_least_one)]
+        #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = at_least_one)]
         count: usize,
         #[command(flatten)]
         output: PoseOutput,

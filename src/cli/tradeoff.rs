@@ -67,10 +67,8 @@ impl TradeoffCommand {
         let mut given = self.options.given()?;
         given.options.machine = settled(&given.options.machine);
         if given.options.search.symmetry.is_some() {
-            return Err(
-                Failure::input("settings of a search for rings are not swept")
-                    .remedy("leave `symmetry` out of the file of options"),
-            );
+            return Err(Failure::input("`knotdock tradeoff` does not dock rings")
+                .remedy("remove `symmetry` from the file of options"));
         }
         threads::on(given.options.machine.threads.count(), || {
             self.sweep(given, console)

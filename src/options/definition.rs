@@ -64,10 +64,23 @@ impl Definition {
         &self.argument
     }
 
-    /// The help.
+    /// The help, details included.
     pub fn help(&self) -> String {
+        let (short, long) = (self.argument.get_help(), self.argument.get_long_help());
+        long.or(short).map(ToString::to_string).unwrap_or_default()
+    }
+
+    /// The help in a line.
+    pub fn short_help(&self) -> String {
         let help = self.argument.get_help();
         help.map(ToString::to_string).unwrap_or_default()
+    }
+
+    /// Whether only files of options give it, not words of a command line: weights and potentials, which were fitted
+    /// and which few people change.
+    pub fn is_of_files(&self) -> bool {
+        let name = self.name();
+        name.ends_with("_weight") || name.ends_with("_potential")
     }
 
     /// Whether the value is the name of a file.
@@ -93,6 +106,18 @@ impl Definition {
     /// The word of a command line that gives the option a value.
     pub fn word(&self, value: &str) -> String {
         format!("--{}={value}", self.long())
+    }
+}
+
+impl Definition {
+    /// The line of a file of options that gives the option a value, its table included: `terms.contact_weight=1.5`.
+    pub fn line(&self, value: &str) -> String {
+        let value = match value.parse::<f64>() {
+            Ok(_) => value.to_owned(),
+            // A text of JSON is one of TOML.
+            Err(_) => serde_json::Value::from(value).to_string(),
+        };
+        format!("{}.{}={value}", self.subject(), self.name())
     }
 }
 

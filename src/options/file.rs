@@ -8,10 +8,12 @@
 //! contact_weight = 1.5
 //! ```
 //!
-//! A value is what may be typed for the option, as text or as a number.
+//! A value is what may be typed for the option, as text or as a number. One line may stand for a file:
+//! `--config terms.contact_weight=1.5`.
 
 use std::ops::Range;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use clap::Args;
 use toml::Spanned;
@@ -42,6 +44,8 @@ pub struct ConfigError {
     pub message: String,
     /// Remedy for the user.
     pub remedy: String,
+    /// Why a value was refused, where one was: it may be the name of a file with a fault of its own.
+    pub refused: Option<Arc<clap::Error>>,
 }
 
 /// Reads a file with options of a struct.
@@ -49,18 +53,44 @@ pub struct ConfigError {
 /// # Errors
 /// [`ConfigError`] for a file that cannot be read or is not TOML, an unknown table or option, and a value out of range.
 pub fn read<T: Args>(path: &Path) -> Result<Vec<Entry>, ConfigError> {
-    let failed = |line, message: String, remedy: String| ConfigError {
+    let text = read_bounded_text(path, MAX_OPTIONS).map_err(|error| ConfigError {
         path: path.to_owned(),
-        line,
-        message,
-        remedy,
-    };
-    let text = read_bounded_text(path, MAX_OPTIONS)
-        .map_err(|error| failed(None, error.to_string(), "check the file".to_owned()))?;
+        line: None,
+        message: error.to_string(),
+        remedy: "check the file".to_owned(),
+        refused: None,
+    })?;
+    read_text::<T>(&text, path)
+}
+
+/// Reads the text of a file with options of a struct. Files that it names are looked for from the folder of `path`,
+/// which errors name.
+///
+/// # Errors
+/// As those of [`read`].
+pub fn read_text<T: Args>(text: &str, path: &Path) -> Result<Vec<Entry>, ConfigError> {
     let folder = path.parent().unwrap_or(Path::new(""));
-    entries::<T>(&text, folder).map_err(|wrong| {
-        let line = wrong.span.map(|span| line_at(&text, span.start));
-        failed(line, wrong.message, wrong.remedy)
+    entries::<T>(text, folder).map_err(|wrong| ConfigError {
+        path: path.to_owned(),
+        line: wrong.span.map(|span| line_at(text, span.start)),
+        message: wrong.message,
+        remedy: wrong.remedy,
+        refused: wrong.refused,
+    })
+}
+
+/// Reads one line with an option, such as `terms.contact_weight=1.5`. A file that it names is looked for from the
+/// working directory.
+///
+/// # Errors
+/// As those of [`read`]; they name the line in a file's place.
+pub fn read_line<T: Args>(line: &str) -> Result<Vec<Entry>, ConfigError> {
+    entries::<T>(line, Path::new("")).map_err(|wrong| ConfigError {
+        path: PathBuf::from(line),
+        line: None,
+        message: wrong.message,
+        remedy: wrong.remedy,
+        refused: wrong.refused,
     })
 }
 
@@ -69,6 +99,7 @@ struct Wrong {
     span: Option<Range<usize>>,
     message: String,
     remedy: String,
+    refused: Option<Arc<clap::Error>>,
 }
 
 /// 1-based line of a byte.
@@ -84,6 +115,7 @@ fn entries<T: Args>(text: &str, folder: &Path) -> Result<Vec<Entry>, Wrong> {
         span: error.span(),
         message: error.message().to_owned(),
         remedy: "write TOML: tables such as [search], and lines such as rotations = 900".to_owned(),
+        refused: None,
     })?;
     let mut entries = Vec::new();
     for (subject, table) in document.into_inner() {
@@ -101,17 +133,22 @@ fn entries<T: Args>(text: &str, folder: &Path) -> Result<Vec<Entry>, Wrong> {
             let wrong = |message: String| Wrong {
                 span: Some(span.clone()),
                 message,
-                remedy: format!("see --{} in `knotdock dock --help`", option.long()),
+                remedy: remedy_of(option),
+                refused: None,
             };
             let words = words(option, &value, folder).map_err(wrong)?;
             text::read::<T>(words.iter().map(Into::into)).map_err(|error| {
                 let refused = text::refused(&error);
-                wrong(format!(
+                let message = format!(
                     "{} = {}: it must be {}",
                     option.name(),
                     refused.value,
                     refused.bound
-                ))
+                );
+                Wrong {
+                    refused: Some(Arc::new(error)),
+                    ..wrong(message)
+                }
             })?;
             entries.push(Entry {
                 name: option.name().to_owned(),
@@ -120,6 +157,14 @@ fn entries<T: Args>(text: &str, folder: &Path) -> Result<Vec<Entry>, Wrong> {
         }
     }
     Ok(entries)
+}
+
+/// Where an option is described.
+fn remedy_of(option: &Definition) -> String {
+    match option.is_of_files() {
+        true => format!("see `{}` in `knotdock preset default --all`", option.name()),
+        false => format!("see --{} in `knotdock dock --help`", option.long()),
+    }
 }
 
 /// A table that no subject has, or an option outside of a table.
@@ -136,6 +181,7 @@ fn no_table(found: &Spanned<DeString<'_>>, definitions: &[Definition]) -> Wrong 
         span: Some(found.span()),
         message: format!("`{name}` is no table of options"),
         remedy,
+        refused: None,
     }
 }
 
@@ -156,6 +202,7 @@ fn no_option(found: &Spanned<DeString<'_>>, subject: &str, definitions: &[Defini
         span: Some(found.span()),
         message: format!("there is no option `{name}` in [{subject}]"),
         remedy,
+        refused: None,
     }
 }
 

@@ -13,35 +13,43 @@ use super::values::{above_zero, not_negative};
 #[command(next_help_heading = "Kernel")]
 #[serde(deny_unknown_fields)]
 pub struct KernelOptions {
-    /// Effects to score: auto takes those that the inputs call for; else any of shape, electrostatics, contact and
-    /// restraint, with commas between them (shape is always on).
-    #[arg(long, value_name = "NAMES", default_value = "auto")]
+    /// Effects that score: auto, or names with commas between.
+    ///
+    /// auto takes the effects that the inputs call for. The names are shape (always on), electrostatics, contact and
+    /// restraint.
+    #[arg(long, value_name = "auto|NAMES", default_value = "auto")]
     pub effects: EffectChoice,
-    /// Penalty of overlap against the reward of contact (dimensionless).
-    #[arg(long, value_name = "X", value_parser = not_negative, default_value_t = 9.0)]
+    /// Penalty of overlap against the reward of contact.
+    #[arg(long, value_name = "NUMBER", value_parser = not_negative, default_value_t = 9.0)]
     pub lambda: f64,
-    /// Depth r0 of the skin, in Å; of meshes the gap that is looked for between the parts, by default twice the eps
-    /// of both parts' sampling, at most twice the smaller feature size.
-    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = 2.2)]
+    /// Depth r0 of the skin.
+    ///
+    /// Of meshes it is the gap that is looked for between the parts. Its default is then twice the eps of both parts'
+    /// sampling, and at most twice the smaller feature size.
+    #[arg(long, value_name = "ANGSTROM", value_parser = not_negative, default_value_t = 2.2)]
     pub offset: f64,
-    /// Exponent of the bump kernel (dimensionless): large values harden the balls, `inf` makes them sharp.
-    #[arg(long, value_name = "X", value_parser = exponent::parse, default_value_t = 2.0)]
+    /// Exponent of the bump kernel: large values harden the balls, `inf` makes them sharp.
+    #[arg(long, value_name = "NUMBER", value_parser = exponent::parse, default_value_t = 2.0)]
     #[serde(with = "exponent")]
     pub alpha: f64,
-    /// Finest detail that is ranked, in Å, of meshes in their unit as all lengths: the low-pass ends at 1/A cycles
-    /// per Å; of meshes by default 2.045 times the offset.
-    #[arg(long, value_name = "A", value_parser = above_zero, default_value_t = 4.5)]
+    /// Finest detail that is ranked: the low-pass ends at one cycle per this length.
+    ///
+    /// Of meshes the default is 2.045 times the offset.
+    #[arg(long, value_name = "ANGSTROM", value_parser = above_zero, default_value_t = 4.5)]
     pub resolution: f64,
-    /// Coarsest detail that the low-pass touches, in Å: it takes nothing below 1/A cycles per Å; at least a hundredth
-    /// above the resolution [default: 2 times the resolution].
-    #[arg(long, value_name = "A", value_parser = above_zero)]
+    /// Coarsest detail that the low-pass touches [default: 2 times the resolution].
+    ///
+    /// It leaves whole what is below one cycle per this length, which is at least a hundredth above the resolution.
+    #[arg(long, value_name = "ANGSTROM", value_parser = above_zero)]
     pub pass_length: Option<f64>,
-    /// Spacing of the translation grid, in Å [default: half the resolution, or finer where the tolerance needs it].
-    #[arg(long, value_name = "A", value_parser = above_zero)]
+    /// Spacing of the translation grid [default: half the resolution, or finer where the tolerance needs it].
+    #[arg(long, value_name = "ANGSTROM", value_parser = above_zero)]
     pub spacing: Option<f64>,
-    /// Error of the fast path that is allowed, as a share of the best score. A smaller one lengthens the window of
-    /// the kernel too, so that exact scores of runs with different tolerances differ.
-    #[arg(long, value_name = "X", value_parser = above_zero, default_value_t = 1e-2)]
+    /// Error of the fast path that is allowed, as a share of the best score.
+    ///
+    /// A smaller one also lengthens the window of the kernel. Exact scores of runs with different tolerances therefore
+    /// differ.
+    #[arg(long, value_name = "SHARE", value_parser = above_zero, default_value_t = 1e-2)]
     pub tolerance: f64,
 }
 

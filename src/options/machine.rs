@@ -11,8 +11,9 @@ pub struct MachineOptions {
     /// Threads.
     #[command(flatten)]
     pub threads: Threads,
-    /// Memory that the whole run may take, program, reading and sampling included, such as 800M (10^6) or 4GiB (2^30
-    /// bytes) [default: 80% of what is free].
+    /// Memory that the whole run may take, such as 800M or 4GiB [default: 80% of what is free].
+    ///
+    /// Program, reading and sampling included. M is 10^6 bytes, GiB 2^30.
     #[arg(long, value_name = "SIZE", value_parser = size)]
     pub memory: Option<u64>,
 }
@@ -22,7 +23,7 @@ pub struct MachineOptions {
 #[command(next_help_heading = "Machine")]
 pub struct Threads {
     /// Threads [default: all hardware threads].
-    #[arg(short = 'j', long, value_name = "N", value_parser = at_least_one)]
+    #[arg(short = 'j', long, value_name = "COUNT", value_parser = at_least_one)]
     pub threads: Option<usize>,
 }
 

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 #[serde(deny_unknown_fields)]
 pub struct OutputOptions {
     /// Complexes to write to top/.
-    #[arg(long, value_name = "N", default_value_t = 10)]
+    #[arg(long, value_name = "COUNT", default_value_t = 10)]
     pub write_top: usize,
     /// Add the diagnostic columns to poses.csv.
     #[arg(long)]

@@ -10,17 +10,20 @@ use super::values::not_negative;
 #[command(next_help_heading = "Ranking")]
 #[serde(deny_unknown_fields)]
 pub struct RankingOptions {
-    /// RMSD within which poses form a cluster, in Å, over the ligand's CA atoms or a mesh's sample points; of meshes
-    /// by default 2.273 times the offset.
-    #[arg(long, value_name = "A", value_parser = not_negative, default_value_t = 5.0)]
+    /// RMSD within which poses form a cluster, over the ligand's CA atoms.
+    ///
+    /// Of meshes it is over the sample points, and the default is 2.273 times the offset.
+    #[arg(long, value_name = "ANGSTROM", value_parser = not_negative, default_value_t = 5.0)]
     pub cluster_radius: f64,
-    /// Fit the best poses at atomic resolution: auto ranks by these fits where one stands out as an exact fit does, on
-    /// always, off never looks for them.
+    /// Fit the best poses at atomic resolution: auto, on or off.
+    ///
+    /// auto ranks by these fits if one stands out as an exact fit does. on always ranks by them. off makes none.
     #[arg(long, value_enum, value_name = "auto|on|off", hide_possible_values = true, default_value_t = SharpChoice::Auto)]
     #[serde(default = "before_sharp_fits")]
     pub sharp: SharpChoice,
-    /// List every pose, but for those within a step of the search of a better refined one; without this, one row a
-    /// cluster, its best pose.
+    /// List every pose, not the best one of each cluster.
+    ///
+    /// Refined poses within a step of the search of a better one are left out.
     #[arg(long)]
     pub no_cluster: bool,
 }

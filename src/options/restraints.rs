@@ -17,59 +17,77 @@ use crate::restraints::{Crosslink, Needed, RestraintFile, RestraintFileError};
 #[command(next_help_heading = "Restraints (molecules)")]
 #[serde(deny_unknown_fields)]
 pub struct RestraintOptions {
-    /// What may touch of an antibody, which is detected from its sequence: cdrs, its complementarity-determining
-    /// regions and what lies within 5 Å of them, or whole, all of it.
+    /// What may touch of an antibody: cdrs or whole.
+    ///
+    /// Antibodies are detected from their sequence. cdrs: the complementarity-determining regions and what lies within
+    /// 5 Å of them. whole: all of it.
     #[arg(long, value_enum, value_name = "cdrs|whole", hide_possible_values = true, default_value_t = AntibodySurface::Cdrs)]
     pub antibody: AntibodySurface,
-    /// Residues of the receptor to keep free of contact: H:1-50,52,52A,L for a range with all that is inserted in it,
-    /// a residue, an inserted one and a chain. A chain without a name is _; after a residue its chain's name may be
-    /// left out, unless another chain is called so.
+    /// Residues of the receptor that are not in contact, such as H:1-50,52A,L.
+    ///
+    /// H:1-50 is a range with all that is inserted in it, 52A an inserted residue, L a chain. A chain without a name
+    /// is _. After a residue its chain's name may be left out, unless another chain has the residue's name.
     #[arg(long, value_name = "RESIDUES")]
     pub block_receptor: Option<ResidueSelection>,
-    /// Residues of the ligand to keep free of contact, likewise.
+    /// Residues of the ligand that are not in contact.
+    ///
+    /// Written as those of --block-receptor.
     #[arg(long, value_name = "RESIDUES")]
     pub block_ligand: Option<ResidueSelection>,
-    /// Active residues of the receptor, thought to be in contact: poses that touch them rank higher, by
-    /// --active-weight. In the search each contact of theirs earns a 250th of that, divided by their number.
+    /// Residues of the receptor that are thought to be in contact, such as A:57,189-195.
+    ///
+    /// Poses that touch them rank higher, by active_weight of [terms]. In the search each contact of theirs earns a
+    /// 250th of that, divided by their number.
     #[arg(long, value_name = "RESIDUES")]
     pub active_receptor: Option<ResidueSelection>,
-    /// Active residues of the ligand, likewise.
+    /// Residues of the ligand that are thought to be in contact.
+    ///
+    /// Written as those of --active-receptor.
     #[arg(long, value_name = "RESIDUES")]
     pub active_ligand: Option<ResidueSelection>,
-    /// Distances that are known between receptor and ligand: a table (columns receptor, ligand, lower, target, upper,
-    /// group; residues as A:57, atoms as A:57.CA) or a .tbl of HADDOCK and CNS. Poses that cannot satisfy them are not
-    /// searched.
+    /// Distances that are known between receptor and ligand: a table, or a .tbl of HADDOCK and CNS.
+    ///
+    /// The columns of the table are receptor, ligand, lower, target, upper and group. Residues are written as A:57,
+    /// atoms as A:57.CA. Poses that cannot satisfy the distances are not searched.
     #[arg(long, value_name = "FILE", value_parser = restraint_file, value_hint = ValueHint::FilePath)]
     pub restraints: Option<RestraintFile>,
-    /// How many of the restraints a pose has to satisfy: a number, or a share such as 60%. Fewer than all, where some
-    /// may be false.
-    #[arg(long, value_name = "K|SHARE", default_value_t = Needed::default())]
+    /// How many of the restraints a pose has to satisfy: a number, or a share such as 60%.
+    ///
+    /// Ask for fewer than all if some may be false.
+    #[arg(long, value_name = "COUNT|SHARE", default_value_t = Needed::default())]
     pub restraints_need: Needed,
-    /// The reagent of cross-links: rows of --restraints without an upper bound get that of its CA atoms. DSS or BS3:
-    /// 30 Å.
-    #[arg(long, value_name = "NAME")]
+    /// Reagent of cross-links: DSS or BS3.
+    ///
+    /// Rows of --restraints without an upper bound get that of the reagent, between CA atoms. DSS and BS3: 30 Å.
+    #[arg(long, value_name = "REAGENT")]
     pub crosslink: Option<Crosslink>,
-    /// How likely each residue of the receptor is in the interface, as a predictor says: a table (columns chain,
-    /// residue, probability), or bfactor for the B values of the receptor's file. Poses that touch the likely ones rank
-    /// higher, by --interface-weight.
+    /// How likely each residue of the receptor is in the interface: a table, or bfactor.
+    ///
+    /// The columns of the table are chain, residue and probability, as a predictor gives them. bfactor reads the B
+    /// values of the receptor's file. Poses that touch the likely residues rank higher, by interface_weight of
+    /// [terms].
     #[arg(long, value_name = "FILE|bfactor", value_parser = PredictionSource::read, value_hint = ValueHint::FilePath)]
     pub interface_receptor: Option<PredictionSource>,
     /// The same of the ligand.
     #[arg(long, value_name = "FILE|bfactor", value_parser = PredictionSource::read, value_hint = ValueHint::FilePath)]
     pub interface_ligand: Option<PredictionSource>,
-    /// A membrane that no atom of the other molecule enters: receptor or ligand, whose file marks its planes as those
-    /// of OPM and PPM do, or the lowest and highest z in Å of the receptor's file (--membrane=-15,15). Poses in it are
-    /// not searched, but for what lies between the samples, which costs --membrane-weight.
+    /// A membrane that no atom of the other molecule enters: receptor, ligand or two heights z.
+    ///
+    /// receptor or ligand: that file marks the planes as OPM and PPM do. LOW,HIGH: the lowest and highest z in Å of the
+    /// receptor's file (--membrane=-15,15). Poses in it are not searched. What lies between the samples costs
+    /// membrane_weight of [terms].
     #[arg(
         long,
         value_name = "receptor|ligand|LOW,HIGH",
         allow_hyphen_values = true
     )]
     pub membrane: Option<MembraneChoice>,
-    /// What a pose earns in which the active site of a peptidase touches, else the share of its catalytic residues
-    /// that does: score. Peptidases are detected from their sequence, and this counts where the contact effect is on,
-    /// no residue is active and the other is neither peptidase nor antibody; 0 for none.
-    #[arg(long, value_name = "X", value_parser = number(0.0..=1e6), default_value_t = peptidase::WEIGHT)]
+    /// What a pose earns in which the active site of a peptidase touches; 0 for none.
+    ///
+    /// A pose that touches a part of the catalytic residues gets that share of it. Peptidases are detected from their
+    /// sequence. This counts if the contact effect is on, no residue is active, and the other molecule is neither
+    /// peptidase nor antibody.
+    #[arg(long, value_name = "NUMBER", value_parser = number(0.0..=1e6), default_value_t = peptidase::WEIGHT)]
     pub peptidase_weight: f64,
 }
 

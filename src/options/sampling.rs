@@ -13,11 +13,12 @@ use crate::mesh::samplers::SamplerName;
 #[command(next_help_heading = "Sampling (meshes)")]
 #[serde(deny_unknown_fields)]
 pub struct SamplingOptions {
-    /// Of meshes: nodes of the grid that each part is sampled on, as 2^18 or 262144 [default: 2^18].
-    #[arg(long, value_name = "M")]
+    /// Nodes of the grid on which each mesh is sampled, as 2^18 or 262144 [default: 2^18].
+    #[arg(long, value_name = "COUNT")]
     pub sample_grid: Option<SampleGrid>,
-    /// Of meshes: weights of the balls, those whose summed bumps come closest to one inside and to zero outside, or one
-    /// [default: fitted].
+    /// Weights of the balls of meshes: fitted or unit [default: fitted].
+    ///
+    /// fitted: the summed bumps come closest to one inside and to zero outside. unit: one each.
     #[arg(
         long,
         value_enum,
@@ -25,8 +26,9 @@ pub struct SamplingOptions {
         hide_possible_values = true
     )]
     pub sample_weights: Option<SampleWeights>,
-    /// Of meshes: how a part becomes balls. lattice: balls of one radius; bi: those of Behandish and Ilieş' Algorithm 1,
-    /// which count by volume [default: lattice].
+    /// How a mesh becomes balls: lattice or bi [default: lattice].
+    ///
+    /// lattice: balls of one radius. bi: the balls of Behandish and Ilieş' Algorithm 1, which count by volume.
     #[arg(long, value_name = "lattice|bi")]
     pub sampler: Option<SamplerName>,
 }

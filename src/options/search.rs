@@ -11,40 +11,48 @@ use super::values::{count, rotations, share};
 #[command(next_help_heading = "Search")]
 #[serde(deny_unknown_fields)]
 pub struct SearchOptions {
-    /// Rotations of the ligand, near uniform over all: their number, or their angle. An angle such as 15deg stands
-    /// for the field's count 3600 (15/D)^3, so that 6deg gives 56,250. With `dock --symmetry` axes, by default 900
-    /// over half a sphere or 90 across a ring's own.
-    #[arg(long, value_name = "N|DEG", value_parser = rotations(1..=MAX_ROTATIONS), default_value_t = 3600)]
+    /// Rotations of the ligand, spread evenly over all: their number, or the angle between them, such as 15deg.
+    ///
+    /// An angle stands for a number, 3600 (15/D)^3, so that 6deg gives 56,250. With --symmetry the option counts axes,
+    /// by default 900 over half a sphere or 90 across a ring's own.
+    #[arg(long, value_name = "COUNT|ANGLE", value_parser = rotations(1..=MAX_ROTATIONS), default_value_t = 3600)]
     pub rotations: usize,
-    /// Search again, among this many rotations (or this angle, likewise), about the best: their peaks take the place
-    /// of the best rotations' own.
-    #[arg(long, value_name = "N|DEG", value_parser = rotations(1..=MAX_ROTATIONS))]
+    /// Search again, among this many rotations, about the best: a number or an angle.
+    ///
+    /// Their peaks take the place of the best rotations' own.
+    #[arg(long, value_name = "COUNT|ANGLE", value_parser = rotations(1..=MAX_ROTATIONS))]
     pub fine_rotations: Option<usize>,
     /// Share of the finer rotations that are searched.
-    #[arg(long, value_name = "X", value_parser = share, default_value_t = 0.05)]
+    #[arg(long, value_name = "SHARE", value_parser = share, default_value_t = 0.05)]
     pub fine_share: f64,
-    /// Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What is
-    /// reported is in double precision either way.
+    /// Floating-point type of the search: single or double.
+    ///
+    /// single allows tolerances down to 1e-4, double down to 1e-6. What is reported is in double precision either way.
     #[arg(long, value_enum, value_name = "single|double", hide_possible_values = true, default_value_t = Precision::Single)]
     pub precision: Precision,
-    /// What correlates: cpu, or gpu, a graphics processor driven through Vulkan, Metal or Direct3D 12, in single
-    /// precision; of several the environment variable WGPU_ADAPTER_NAME names one.
+    /// What computes the correlations: cpu, or gpu, a graphics processor.
+    ///
+    /// A graphics processor works through Vulkan, Metal or Direct3D 12, in single precision. If there are several, the
+    /// environment variable WGPU_ADAPTER_NAME names one.
     #[arg(long, value_enum, value_name = "cpu|gpu", hide_possible_values = true, default_value_t = EngineChoice::Cpu)]
     pub engine: EngineChoice,
     /// Peaks kept of each rotation.
-    #[arg(long, value_name = "N", value_parser = count(1..=10_000), default_value_t = 3)]
+    #[arg(long, value_name = "COUNT", value_parser = count(1..=10_000), default_value_t = 3)]
     pub per_rotation: usize,
     /// Poses kept of all rotations.
-    #[arg(long, value_name = "N", value_parser = count(1..=10_000_000), default_value_t = 2000)]
+    #[arg(long, value_name = "COUNT", value_parser = count(1..=10_000_000), default_value_t = 2000)]
     pub poses: usize,
-    /// Best poses to refine off the grid [default: 600 with shape alone, none beside other effects, where tighter
-    /// fits make no better a ranking].
-    #[arg(long, value_name = "N")]
+    /// Best poses to refine off the grid [default: 600 with shape alone, else none].
+    ///
+    /// Beside other effects tighter fits make no better a ranking.
+    #[arg(long, value_name = "COUNT")]
     pub refine: Option<usize>,
-    /// Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 and so on for 2, 3 and more copies about an
-    /// axis. Where RECEPTOR is itself a ring of 2, 3 or more copies, D2, D3 and so on dock two such rings face to
-    /// face. The option --rotations then counts axes, and each pose is where the second copy or ring goes. Residues
-    /// that --block-receptor and --active-receptor name are those of every copy, or of both rings.
+    /// Dock copies of RECEPTOR into a ring: C2, C3 ..., or two rings: D2, D3 ...
+    ///
+    /// LIGAND is left out. C2, C3 and so on put 2, 3 and more copies about an axis. If RECEPTOR is itself a ring of 2,
+    /// 3 or more copies, D2, D3 and so on dock two such rings face to face. The option --rotations then counts axes,
+    /// and each pose is where the second copy or ring goes. Residues that --block-receptor and --active-receptor name
+    /// are those of every copy, or of both rings.
     #[arg(long, value_name = "Cn|Dn")]
     pub symmetry: Option<Symmetry>,
 }

@@ -88,7 +88,7 @@ impl Args for TermWeights {
             };
             Arg::new(option.name.as_str())
                 .long(option.weight.option)
-                .value_name("X")
+                .value_name("NUMBER")
                 .value_parser(number(0.0..=MAX_WEIGHT))
                 .default_value(option.default.as_str())
                 .help(format!("{help}: {unit}{zero}"))

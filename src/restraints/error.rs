@@ -98,7 +98,9 @@ pub enum RestraintFault {
     },
 
     /// A preset of a cross-linking reagent with a file of statements.
-    #[error("the preset {0} has no use in a .tbl file, whose statements have their distances")]
+    #[error(
+        "--crosslink {0} does nothing in a .tbl file, whose statements have their own distances"
+    )]
     CrosslinkOfTbl(&'static str),
     /// Something else than the statement needs here.
     #[error("there must be {expected}, not {found}")]

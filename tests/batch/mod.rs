@@ -375,8 +375,8 @@ fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
         ("--lambda -1", "invalid value '-1' for '--lambda"),
         ("extra.pdb", "no file can come after --"),
         ("--budget 5s --rotations 5", "cannot be used with"),
-        ("--rerun run.json", "--rerun cannot come after --"),
-        ("-o elsewhere", "--output cannot come after --"),
+        ("--rerun run.json", "--rerun cannot stand after --"),
+        ("-o elsewhere", "--output cannot stand after --"),
     ] {
         let output = batch(
             folder.path(),

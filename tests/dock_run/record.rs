@@ -80,7 +80,10 @@ fn a_run_with_tables_of_its_own_repeats_to_the_byte() {
                 .replace(",+", ",");
             assert_ne!(&turned, own);
             fs::write(folder.path().join(format!("{name}.csv")), turned).unwrap();
-            format!("--{name}-potential {name}.csv")
+            format!(
+                "--config=terms.{}_potential='{name}.csv'",
+                name.replace('-', "_")
+            )
         })
         .collect();
     let dock = "dock receptor.pdb ligand.pdb --rotations 20 --quiet";

@@ -13,8 +13,9 @@ fn clashes_with_unresolved_residues_cost() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let table = |weight: &str| {
-        let options = "--rotations 24 --effects shape --no-cluster --refine 0 --termini-weight 0 --unresolved-weight";
-        let options: Vec<&str> = options.split(' ').chain([weight]).collect();
+        let unresolved = format!("--config=terms.unresolved_weight={weight}");
+        let options = "--rotations 24 --effects shape --no-cluster --refine 0 --config=terms.termini_weight=0";
+        let options: Vec<&str> = options.split(' ').chain([unresolved.as_str()]).collect();
         let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
         let unresolved = object["run"]["plan"]["unresolved_residues"].clone();
         let mut reader = csv::Reader::from_reader(table.as_bytes());
@@ -93,7 +94,7 @@ fn inside(atoms: &[[f64; 3]], segments: &[Conformers], reach: f64) -> f64 {
 fn contacts_of_termini_cost() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
-    let options = "--rotations 24 --effects shape --no-cluster --refine 0 --unresolved-weight 0 --termini-weight 3";
+    let options = "--rotations 24 --effects shape --no-cluster --refine 0 --config=terms.unresolved_weight=0 --config=terms.termini_weight=3";
     let options: Vec<&str> = options.split(' ').collect();
     let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
     let plan = &object["run"]["plan"];

@@ -48,7 +48,7 @@ fn named_residues_are_kept_free_or_touched() {
         )
     };
     let cost = |row: &Value| scorer.score(&pose(row)).terms[Effect::Restraint as usize];
-    let free = rows(&["--peptidase-weight", "0"]);
+    let free = rows(&["--config", "restraints.peptidase_weight=0"]);
     let blocked = rows(&["--block-receptor", sites]);
     assert!(free.iter().all(|row| row["restraint"].is_null()));
     for row in &blocked {
@@ -60,7 +60,12 @@ fn named_residues_are_kept_free_or_touched() {
     assert!(after > 0.4 * before && before < -100.0, "{before} {after}");
 
     // Fourteen residues are active, which the inhibitor cannot all reach.
-    let drawn = rows(&["--active-receptor", sites, "--active-weight", "4000"]);
+    let drawn = rows(&[
+        "--active-receptor",
+        sites,
+        "--config",
+        "terms.active_weight=4000",
+    ]);
     let attracting = DockOptions::default().changed(|attracting| {
         attracting.restraints.active_receptor = options.restraints.block_receptor.clone();
         attracting.terms.weights.set("active_residues", 1.0);
@@ -84,7 +89,7 @@ fn named_residues_are_kept_free_or_touched() {
         (&["--block-ligand", "Z:1"][..], "block-ligand is Z:1"),
         (&["--active-ligand", "Z:1"], "active-ligand is Z:1"),
         (&["--block-receptor", "A:9000"], "among A:"),
-        (&["--effects", "restraint"], "there can be no restraint"),
+        (&["--effects", "restraint"], "restraint cannot be scored"),
         (
             &["--effects", "shape", "--block-receptor", sites],
             "name restraint too",
@@ -110,6 +115,7 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let rows = |weight: &str| {
+        let weight = format!("restraints.peptidase_weight={weight}");
         let options = [
             "--rotations",
             "48",
@@ -117,8 +123,8 @@ fn the_active_site_of_a_peptidase_ranks_poses_and_moves_none() {
             "40",
             "--no-cluster",
             "--diagnostics",
-            "--peptidase-weight",
-            weight,
+            "--config",
+            &weight,
         ];
         let (object, table) = dock(folder.path(), &receptor, &ligand, &options);
         let mut reader = csv::Reader::from_reader(table.as_bytes());

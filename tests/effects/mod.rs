@@ -55,10 +55,10 @@ fn an_effect_that_is_off_changes_nothing() {
         dock(folder.path(), &receptor, &ligand, &all).1
     };
     let weights = [
-        "--electrostatics-weight",
-        "77",
-        "--contact-weight",
-        "3",
+        "--config",
+        "terms.electrostatics_weight=77",
+        "--config",
+        "terms.contact_weight=3",
         "--ph",
         "2",
     ];

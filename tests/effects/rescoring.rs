@@ -16,8 +16,9 @@ fn rescoring_orders_poses_and_changes_no_score() {
             "--no-cluster",
             "--diagnostics",
         ];
-        all.extend(["--peptidase-weight", "0", "--unresolved-weight", "0"]);
-        all.extend(["--termini-weight", "0"]);
+        all.extend(["--config", "restraints.peptidase_weight=0"]);
+        all.extend(["--config", "terms.unresolved_weight=0"]);
+        all.extend(["--config", "terms.termini_weight=0"]);
         all.extend(options);
         let (_, table) = dock(folder.path(), &receptor, &ligand, &all);
         let mut reader = csv::Reader::from_reader(table.as_bytes());
@@ -29,19 +30,17 @@ fn rescoring_orders_poses_and_changes_no_score() {
     let number = |row: &std::collections::BTreeMap<String, String>, name: &str| -> f64 {
         row[name].parse().unwrap()
     };
-    const TERMS: [(&str, &str); 3] = [
-        ("--fine-contact-weight", "fine_contact"),
-        ("--atom-pair-weight", "atom_pair"),
-        ("--relaxed-weight", "relaxed"),
-    ];
+    const TERMS: [&str; 3] = ["fine_contact", "atom_pair", "relaxed"];
     let weighed = |weights: [&str; 3]| {
         let options = TERMS.iter().zip(weights);
-        let options = options.flat_map(|((option, _), weight)| [*option, weight]);
-        table(&options.collect::<Vec<_>>())
+        let options =
+            options.map(|(term, weight)| format!("--config=terms.{term}_weight={weight}"));
+        let options: Vec<String> = options.collect();
+        table(&options.iter().map(String::as_str).collect::<Vec<_>>())
     };
     let (plain, once, twice) = (weighed(["0"; 3]), weighed(["1"; 3]), weighed(["2"; 3]));
     for row in plain.iter().chain(&table(&["--effects", "shape"])) {
-        for (_, term) in TERMS {
+        for term in TERMS {
             assert_eq!(
                 (row[term].as_str(), &row["pose_score"]),
                 ("", &row["search_score"])
@@ -51,10 +50,10 @@ fn rescoring_orders_poses_and_changes_no_score() {
     // By default all.
     assert_eq!(table(&[]), weighed(["2", "1", "3"]));
     // Each term by itself.
-    for (on, (_, only)) in TERMS.iter().enumerate() {
+    for (on, only) in TERMS.iter().enumerate() {
         let weights = std::array::from_fn(|term| if term == on { "2" } else { "0" });
         for row in weighed(weights) {
-            for (term, (_, name)) in TERMS.iter().enumerate() {
+            for (term, name) in TERMS.iter().enumerate() {
                 assert_eq!(row[*name].is_empty(), term != on);
             }
             assert_eq!(
@@ -77,7 +76,7 @@ fn rescoring_orders_poses_and_changes_no_score() {
         assert_eq!(before["search_score"], row["search_score"]);
         moved += usize::from(before["rank"] != row["rank"]);
         let mut all = 0.0;
-        for (_, term) in TERMS {
+        for term in TERMS {
             let (one, two) = (number(half, term), number(row, term));
             assert!(one != 0.0 && (two - 2.0 * one).abs() < 1e-9 * two.abs());
             all += two;

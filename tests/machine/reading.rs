@@ -84,9 +84,9 @@ fn what_is_read_whole_is_read_within_bounds() {
     for name in ["huge", "/dev/zero"] {
         for call in [
             format!("{pair} --config {name}"),
-            format!("{pair} --contact-potential {name}"),
-            format!("{pair} --fine-contact-potential {name}"),
-            format!("{pair} --atom-pair-potential {name}"),
+            format!("{pair} --config terms.contact_potential='{name}'"),
+            format!("{pair} --config terms.fine_contact_potential='{name}'"),
+            format!("{pair} --config terms.atom_pair_potential='{name}'"),
             format!("batch {name} --json -o none"),
         ] {
             let refused = error(&place.call(&call), 2);

@@ -92,9 +92,9 @@ def written(knotdock):
 
 
 POTENTIALS = {
-    "--contact-potential": ROOT / "scoring/src/terms/effect/contact_potential.csv",
-    "--fine-contact-potential": ROOT / "scoring/src/terms/pose/fine_contact_potential.csv",
-    "--atom-pair-potential": ROOT / "scoring/src/terms/pose/atom_pair_potential.csv",
+    "contact_potential": ROOT / "scoring/src/terms/effect/contact_potential.csv",
+    "fine_contact_potential": ROOT / "scoring/src/terms/pose/fine_contact_potential.csv",
+    "atom_pair_potential": ROOT / "scoring/src/terms/pose/atom_pair_potential.csv",
 }
 PDB = ["inspect", "--json"]
 MESH = ["sample", "--json", "--grid", "2^9", "-o", "k.csv"]
@@ -118,7 +118,7 @@ def random_input(trial):
         return name, mutated_json(random, record), ["dock", "--rerun", "FILE", "--json", "-o", "again"]
     if name == "potential.csv":
         option, path = random.choice(list(POTENTIALS.items()))
-        return name, mutated(random, path.read_bytes()), [*SCORED, option, "FILE"]
+        return name, mutated(random, path.read_bytes()), [*SCORED, f"--config=terms.{option}='FILE'"]
     content = mutated(random, seeds[name])
     if name in ("a.pdb", "a.cif"):
         docked = ["dock", "--json", "receptor.pdb", "FILE", *FEW, "-o", "run"]
@@ -150,7 +150,7 @@ def damaged_files(trial):
     name, content, words = random_input(trial)
     trial.make(name, content)
     before = tree(trial.folder)
-    call = trial.run(*[name if word == "FILE" else word for word in words])
+    call = trial.run(*[word.replace("FILE", name) for word in words])
     error = call.error()
     if call.code == 2 and error and name != "run.json":
         trial.check(name in f"{error['file']} {error['message']}", f"the error does not name {name}: {error}")

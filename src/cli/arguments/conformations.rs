@@ -10,18 +10,20 @@ use crate::cli::arguments::ranks::Ranks;
 #[derive(Args, Clone, Debug, Default)]
 #[command(next_help_heading = "Ensembles")]
 pub struct ConformationArguments {
-    /// Models of the receptor's file to dock, each in a run of its own, and to rank together: all, or numbers such as
-    /// 1,3,5-10, where 1 is the first in the file.
+    /// Models of the receptor's file to dock and to rank together: all, or numbers such as 1,3,5-10.
+    ///
+    /// Each is docked in a run of its own. 1 is the first model in the file.
     #[arg(long, value_name = "all|LIST", conflicts_with_all = NOT_WITH)]
     pub receptor_models: Option<ModelList>,
-    /// Models of the ligand's file, likewise.
+    /// Models of the ligand's file, in the same way.
     #[arg(long, value_name = "all|LIST", conflicts_with_all = NOT_WITH)]
     pub ligand_models: Option<ModelList>,
-    /// A further structure of the receptor in another conformation, docked and ranked with the first; may be given
-    /// several times. FILE:H,L picks chains.
+    /// The receptor in another conformation, docked and ranked with the first.
+    ///
+    /// May be given several times. FILE:H,L picks chains.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = NOT_WITH)]
     pub receptor_also: Vec<String>,
-    /// A further structure of the ligand, likewise.
+    /// The ligand in another conformation.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, conflicts_with_all = NOT_WITH)]
     pub ligand_also: Vec<String>,
 }

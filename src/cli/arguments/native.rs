@@ -17,15 +17,17 @@ use crate::cli::messages::failure::Failure;
 /// Options that name the known complex.
 #[derive(Args, Clone, Debug)]
 pub struct NativeArguments {
-    /// Known complex with both partners in one file, to measure the poses against; of several copies the one with the
-    /// largest interface is taken, and FILE:A,B picks chains.
+    /// Known complex, against which poses are measured.
+    ///
+    /// One file has both partners. Of several copies the one with the largest interface is taken; FILE:A,B picks
+    /// chains.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = HEADING)]
     #[arg(conflicts_with_all = ["native_receptor", "native_ligand"])]
     native: Option<String>,
-    /// Receptor of the known complex; FILE:H,L picks chains.
+    /// Receptor of the known complex, in a file of its own.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "native_ligand", help_heading = HEADING)]
     native_receptor: Option<String>,
-    /// Ligand of the known complex, in the frame of its receptor; FILE:H,L picks chains.
+    /// Ligand of the known complex, in the frame of its receptor.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "native_receptor", help_heading = HEADING)]
     native_ligand: Option<String>,
 }
@@ -160,10 +162,28 @@ pub fn measure(evaluator: &Evaluator, rows: &[PoseRow]) -> Vec<PoseQuality> {
 
 /// Says what was matched, and warns where little was.
 pub fn announce(evaluator: &Evaluator, console: Console) {
-    console.say(match_text(evaluator.report()));
+    let report = evaluator.report();
+    console.say(match console.verbose {
+        true => match_text(report),
+        false => brief_match_text(report),
+    });
     for warning in &evaluator.report().warnings {
         console.warn(warning);
     }
+}
+
+/// What was matched, in a line.
+fn brief_match_text(report: &MatchReport) -> String {
+    let share = 100.0 * report.interface_share;
+    let mut text = format!("Known complex: {share:.0}% of its interface is in what is docked");
+    if let [taken, _, ..] = report.complexes.as_slice() {
+        text += &format!(
+            "; of its {} copies {} is taken",
+            report.complexes.len(),
+            complex_text(taken)
+        );
+    }
+    text
 }
 
 /// What was matched, in a line for each side.

@@ -2,12 +2,14 @@
 
 use std::ffi::OsString;
 use std::marker::PhantomData;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 use crate::options::definition::Definition;
-use crate::options::{DockOptions, definitions, file, text};
+use crate::options::file::{ConfigError, Entry};
+use crate::options::{DockOptions, Preset, definitions, file, text};
+use clap::builder::EnumValueParser;
 use clap::parser::ValueSource;
-use clap::{Arg, ArgMatches, Args, Command, FromArgMatches, ValueHint, value_parser};
+use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueHint, value_parser};
 
 use crate::cli::messages::failure::Failure;
 
@@ -69,27 +71,45 @@ struct Typed {
 #[derive(Clone, Debug)]
 pub struct OptionArguments<S> {
     typed: Vec<Typed>,
-    config: Option<PathBuf>,
+    preset: Option<Preset>,
+    configs: Vec<PathBuf>,
     selection: PhantomData<S>,
 }
 
+/// Name of the option that names a preset.
+const PRESET: &str = "preset";
+
 /// Name of the option that names a file of options.
-const CONFIG: &str = "config";
+pub const CONFIG: &str = "config";
+
+/// The options of a command that words of the command line give.
+fn own<S: Selection>() -> impl Iterator<Item = &'static Definition> {
+    let typed = definitions().iter().filter(|option| !option.is_of_files());
+    typed.filter(|option| S::has(option))
+}
 
 impl<S: Selection> Args for OptionArguments<S> {
     fn augment_args(command: Command) -> Command {
+        let preset = Arg::new(PRESET)
+            .long(PRESET)
+            .value_name("NAME")
+            .value_parser(EnumValueParser::<Preset>::new())
+            .help("Options by a name; `knotdock preset NAME` prints them");
         let config = Arg::new(CONFIG)
             .long(CONFIG)
-            .value_name("FILE.toml")
+            .value_name("FILE")
             .value_hint(ValueHint::FilePath)
             .value_parser(value_parser!(PathBuf))
-            .help(
-                "Options of `knotdock dock` from a file in TOML: tables named as the headings of its help, such \
-                 as [search], and lines such as \
-                 fine_rotations = 14400; what is typed as well wins",
+            .action(ArgAction::Append)
+            .help("Options from a TOML file, or one such as terms.contact_weight=1")
+            .long_help(
+                "Options from a TOML file: tables named as the groups of `knotdock dock --help`, such as [search], and \
+                 lines such as rotations = 7200. One option may stand for a file: terms.contact_weight=1. May be given \
+                 several times. Later files win over earlier ones and over the preset, and what is typed wins over \
+                 files. Weights and potentials of the score are given by files alone (`knotdock preset default --all` \
+                 lists them).",
             );
-        let own = definitions().iter().filter(|option| S::has(option));
-        own.fold(command.arg(config), |command, option| {
+        own::<S>().fold(command.arg(preset).arg(config), |command, option| {
             command.arg(option.argument().clone())
         })
     }
@@ -102,7 +122,7 @@ impl<S: Selection> Args for OptionArguments<S> {
 impl<S: Selection> FromArgMatches for OptionArguments<S> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let mut typed = Vec::new();
-        for option in definitions().iter().filter(|option| S::has(option)) {
+        for option in own::<S>() {
             let name = option.name();
             if matches.value_source(name) != Some(ValueSource::CommandLine) {
                 continue;
@@ -123,7 +143,13 @@ impl<S: Selection> FromArgMatches for OptionArguments<S> {
         }
         Ok(Self {
             typed,
-            config: matches.get_one(CONFIG).cloned(),
+            preset: matches.get_one(PRESET).copied(),
+            configs: matches
+                .get_many(CONFIG)
+                .into_iter()
+                .flatten()
+                .cloned()
+                .collect(),
             selection: PhantomData,
         })
     }
@@ -154,7 +180,7 @@ impl GivenOptions {
     pub fn of_rings(self) -> Result<Self, Failure> {
         if self.options.search.symmetry.is_some() && self.by_angle {
             return Err(Failure::input(
-                "an angle is one of rotations, and rings are searched over axes",
+                "--rotations is an angle here, and a search for rings counts axes",
             )
             .remedy("give --rotations a number of axes, or leave it out"));
         }
@@ -167,18 +193,23 @@ impl GivenOptions {
 }
 
 impl<S: Selection> OptionArguments<S> {
-    /// The options: as typed, else as the file gives them, else by default.
+    /// The options: as typed, else as the last file gives them, else as the preset does, else by default.
     ///
     /// # Errors
     /// [`Failure`] for a file of options that cannot be read.
     pub fn given(&self) -> Result<GivenOptions, Failure> {
-        let from_file = match &self.config {
-            Some(path) => file::read::<DockOptions>(path)?,
+        let mut from_files = match self.preset {
+            Some(preset) => preset.entries()?,
             None => Vec::new(),
         };
+        for config in &self.configs {
+            let later = entries_of(config)?;
+            from_files.retain(|entry| later.iter().all(|later| later.name != entry.name));
+            from_files.extend(later);
+        }
         let mut words: Vec<OsString> = Vec::new();
         let mut given: Vec<String> = Vec::new();
-        for entry in from_file {
+        for entry in from_files {
             if self.typed.iter().all(|typed| typed.name != entry.name) {
                 words.extend(entry.words.into_iter().map(Into::into));
                 given.push(entry.name);
@@ -198,5 +229,14 @@ impl<S: Selection> OptionArguments<S> {
             given,
             by_angle,
         })
+    }
+}
+
+/// The options of a value of `--config`: a file, or a line that is none.
+fn entries_of(config: &Path) -> Result<Vec<Entry>, ConfigError> {
+    let line = config.to_str().filter(|text| text.contains('='));
+    match line {
+        Some(line) if !config.exists() => file::read_line::<DockOptions>(line),
+        _ => file::read::<DockOptions>(config),
     }
 }

@@ -19,7 +19,7 @@ pub fn check_output<'a>(
         .filter(|folder| !folder.as_os_str().is_empty());
     if file.is_dir() || !folder.unwrap_or(Path::new(".")).is_dir() {
         return Err(Failure::input(
-            "cannot write there: the folder does not exist or the name is a folder's",
+            "cannot write this file: its folder does not exist, or the name is that of a folder",
         )
         .at(file)
         .remedy("name a file in a folder that exists"));
@@ -49,9 +49,9 @@ pub fn check_not_read<'a>(
     read: impl IntoIterator<Item = &'a Path>,
 ) -> Result<(), Failure> {
     if read.into_iter().any(|other| is_same(file, other)) {
-        return Err(Failure::input("the file to write is one of those read")
+        return Err(Failure::input("the output file is one of the input files")
             .at(file)
-            .remedy("give the file to write a name of its own"));
+            .remedy("give the output file another name"));
     }
     Ok(())
 }

@@ -52,7 +52,7 @@ pub struct SolidOutput {
     #[arg(long, value_enum, default_value_t = Side::Outer)]
     pub set: Side,
     /// Cells of a grid along the longest edge of the box around the solid.
-    #[arg(long, value_name = "N", default_value_t = 64, value_parser = at_least_one)]
+    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = at_least_one)]
     pub cells: usize,
     /// Replace files that are there.
     #[arg(long)]
@@ -73,7 +73,7 @@ const MAX_CELLS: usize = 512;
 
 /// Why a file is not one that is written.
 fn unknown(option: &str, path: &Path, endings: &str) -> Failure {
-    Failure::input(format!("--{option} does not write such files"))
+    Failure::input(format!("--{option} cannot write a file with this ending"))
         .at(path)
         .remedy(format!("end the name with {endings}"))
 }
@@ -95,7 +95,7 @@ impl SolidOutput {
             if files[..index].iter().any(|other| is_same(other, file)) {
                 return Err(Failure::input("the same file is named twice")
                     .at(file)
-                    .remedy("give each file to write a name of its own"));
+                    .remedy("give each output file its own name"));
             }
             check_output(file, read.iter().copied(), self.force)?;
         }
@@ -160,11 +160,9 @@ impl SolidOutput {
         let wants_any =
             self.output.is_some() || self.surface.is_some() || self.volume_grid.is_some();
         if balls.is_empty() && wants_any {
-            return Err(
-                Failure::other("no ball of the result is left to write").remedy(
-                    "sample on a finer --grid and --complement-grid, or write the other --set",
-                ),
-            );
+            return Err(Failure::other("the result has no balls").remedy(
+                "sample on a finer --grid and --complement-grid, or write the other --set",
+            ));
         }
         if let Some(path) = &self.output {
             let knots = match table {
@@ -276,8 +274,9 @@ pub fn shown_surface(balls: &[Ball], origin: [f64; 3]) -> Result<Surface, Failur
 
 /// The depth of balls on a grid.
 fn field(balls: &[Ball], cells: usize) -> Result<BallField, Failure> {
-    let grid = FieldGrid::about(balls, cells)
-        .ok_or_else(|| Failure::other("the balls span no box to lay a grid on"))?;
+    let grid = FieldGrid::about(balls, cells).ok_or_else(|| {
+        Failure::other("the balls have no extent, so no grid can be laid over them")
+    })?;
     Ok(BallField::new(&BallTree::new(balls), grid))
 }
 

@@ -61,7 +61,7 @@ pub fn dock_all<J: Send, T: Send>(
                     let _ = sender.send((turn, dock(work, turn.threads)));
                 };
                 if let Err(error) = Builder::new().spawn_scoped(scope, work) {
-                    let message = format!("the system did not start a thread: {error}");
+                    let message = format!("the system could not start a thread: {error}");
                     failed = Some(Failure::other(message).remedy("use fewer threads (-j)"));
                     continue;
                 }

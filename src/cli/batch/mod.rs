@@ -46,7 +46,7 @@ pub struct Batch {
     output: Option<PathBuf>,
     /// Threads of the whole batch. Small pairs are docked at the same time on one thread each, large ones by themselves
     /// on all. A pair whose own options name a number of threads has that [default: all hardware threads].
-    #[arg(short = 'j', long, value_name = "N", value_parser = at_least_one)]
+    #[arg(short = 'j', long, value_name = "COUNT", value_parser = at_least_one)]
     threads: Option<usize>,
     /// What is kept of each pair.
     #[arg(long, value_name = "WHAT", value_enum, default_value_t = Keep::All)]
@@ -82,24 +82,25 @@ impl Batch {
             PathBuf::from(format!("knotdock_{}", stem.to_string_lossy()))
         });
         if let Some(word) = self.options.iter().find(|word| is_of_program(word)) {
-            return Err(
-                Failure::input(format!("{word} after -- would be an option of each pair")).remedy(
-                    format!("give {word} before --, where it is the whole batch's"),
-                ),
-            );
+            return Err(Failure::input(format!(
+                "{word} stands after --, where the options of each pair stand"
+            ))
+            .remedy(format!(
+                "give {word} before --: it is an option of the whole batch"
+            )));
         }
         let is_plain = self.shard.is_none() && self.keep == Keep::All;
         if is_plain && (self.scratch.is_some() || self.retry_failed) {
             return Err(
-                Failure::input("--scratch and --retry-failed are of shards, and every pair has its own directory here")
+                Failure::input("--scratch and --retry-failed need shards, and this batch writes a directory for each pair")
                     .remedy("leave them out, or give --keep table, --keep none or --shard I/N"),
             );
         }
         if self.rows.is_some() && !self.keep.has_poses() {
-            return Err(
-                Failure::input("--rows is of poses.csv.gz, and no such file is kept")
-                    .remedy("leave it out, or give --keep table or --keep top"),
-            );
+            return Err(Failure::input(
+                "--rows needs poses.csv.gz, which this batch does not keep",
+            )
+            .remedy("leave it out, or give --keep table or --keep top"));
         }
         keep_recent();
         let shard = self.shard.unwrap_or(Shard::WHOLE);

@@ -106,10 +106,10 @@ impl PairWork {
             // A fault of the program costs no other pair, either.
             let docked = catch_unwind(AssertUnwindSafe(|| self.once(threads, silent, console)));
             let docked = docked.unwrap_or_else(|_| {
-                Err(Failure::of_program(
-                    "knotdock failed on this pair, which is a fault of the program",
+                Err(
+                    Failure::of_program("knotdock failed on this pair: this is a bug")
+                        .remedy("report it with the files of the pair; the other pairs go on"),
                 )
-                .remedy("report it with the files of the pair; the other pairs go on"))
             });
             match docked {
                 Err(failure) if failure.may_pass() && retries > 0 => {
@@ -133,7 +133,7 @@ impl PairWork {
                 Ok((true, summary, poses))
             }
             (_, Prepared::Ensemble(_)) => Err(Failure::input(
-                "a pair of several conformations is a run for each two of them, and runs are kept with --keep all alone",
+                "this pair has several conformations, which are docked in runs of their own, and only --keep all keeps runs",
             )
             .remedy("dock such pairs with --keep all")),
         })

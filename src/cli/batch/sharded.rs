@@ -56,7 +56,7 @@ impl Sharding {
         let mut journal = Journal::open(workplace.folder(), &self.record)?;
         if journal.lost() > 0 {
             console.warn(format!(
-                "{} in {} had no whole poses, and are docked again",
+                "{} in {} had incomplete poses and are docked again",
                 counted(journal.lost(), "pair"),
                 workplace.folder().display()
             ));

@@ -31,7 +31,7 @@ pub fn dock_into(
     let _lock = lock(directory)?;
     let results = directory.join(RESULTS);
     if !is_ours(&results) {
-        return Err(Failure::input("this is no table of a batch's results")
+        return Err(Failure::input("this is not a table of results of a batch")
             .at(&results)
             .remedy("choose another directory with -o"));
     }
@@ -53,7 +53,7 @@ pub fn dock_into(
         ))
         .at(&results)
         .remedy(
-            "move the file away: pairs that are done are not docked again, and get their rows anew",
+            "move the file away: finished pairs are not docked again, and their rows are written again",
         )
     })?;
     let jobs = turns.into_iter().filter_map(|turn| {

@@ -115,7 +115,7 @@ fn read_pair(specs: [&InputSpec; 2], options: &DockOptions) -> Result<Box<[Input
     match Bodies::of(specs.map(InputSpec::clone), options)? {
         Bodies::Molecules(inputs) => Ok(inputs),
         Bodies::Meshes(_) => Err(Failure::input(
-            "ensembles are of molecules, and these are none",
+            "only molecules can be docked as ensembles, and these are meshes",
         )),
     }
 }

@@ -56,8 +56,8 @@ impl Ensemble {
     ) -> Result<Self, Failure> {
         if given.options.search.symmetry.is_some() {
             return Err(
-                Failure::input("a ring is made of copies of one conformation")
-                    .remedy("give one conformation with --symmetry, in one run for each"),
+                Failure::input("--symmetry docks one conformation, and several are given")
+                    .remedy("dock each conformation in a run of its own"),
             );
         }
         let laid = LaidSides::read(sides, &given.options)?;

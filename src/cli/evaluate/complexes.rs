@@ -28,7 +28,7 @@ impl Evaluate {
                 .remedy("leave them out; chains of the sides go behind the files, such as H,L A"));
         }
         let Some(native) = self.native.read()? else {
-            return Err(Failure::input("no known complex is named").remedy(
+            return Err(Failure::input("no known complex is given").remedy(
                 "name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE",
             ));
         };

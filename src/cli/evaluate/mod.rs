@@ -65,7 +65,7 @@ impl Evaluate {
             match self.words.as_slice() {
                 [poses] => self.evaluate(Path::new(poses), console).map(|()| 0),
                 _ => Err(
-                    Failure::input("the poses of one run are evaluated at a time").remedy(
+                    Failure::input("several runs are given, and one is evaluated at a time").remedy(
                         "name one directory or table; of complexes, files that end in .pdb or .cif",
                     ),
                 ),
@@ -88,7 +88,7 @@ impl Evaluate {
         let directory = run_path.parent().unwrap_or(Path::new(""));
         if is_ensemble(directory) && (self.receptor.is_some() || self.ligand.is_some()) {
             return Err(Failure::input(
-                "the poses of an ensemble are of several conformations, and --receptor and --ligand name one",
+                "--receptor and --ligand name one conformation, and the poses of an ensemble have several",
             )
             .at(directory)
             .remedy("leave them out, or name the run of a member: a folder in members/"));
@@ -161,7 +161,7 @@ impl Evaluate {
             let names: Vec<String> = input.map(|one| format!("--{}", one.long())).collect();
             let names = names.join(", ");
             return Err(Failure::input(format!(
-                "{names} are for molecules named by --receptor and --ligand; those of a run are read as it read them"
+                "{names} need --receptor and --ligand: the molecules of a run are read as the run read them"
             ))
             .remedy("leave them out, or name the molecules"));
         }
@@ -198,7 +198,7 @@ impl Evaluate {
             (Some(native), _) => native,
             (None, Some(record)) => NativeFiles::recorded(record, run_path)?,
             (None, None) => {
-                return Err(Failure::input("no known complex is named").remedy(
+                return Err(Failure::input("no known complex is given").remedy(
                     "name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE",
                 ));
             }

@@ -4,6 +4,7 @@ use std::collections::HashMap;
 use std::path::Path;
 
 use crate::options::definition::names_file;
+use crate::options::option_named;
 use crate::options::text::first_paragraph;
 use crate::output::shards::Shard;
 use crate::output::tables::batch_results::RESULTS;
@@ -12,6 +13,7 @@ use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
 use knotdock_structures::molecule::InputSpec;
 
+use crate::cli::arguments::options::CONFIG;
 use crate::cli::arguments::program::with_negative_numbers;
 use crate::cli::dock::{Dock, PLACE, refusing_recorded};
 use crate::cli::inputs::bodies::spec_of;
@@ -68,14 +70,14 @@ pub fn pairs(
             };
             if !is_name(&name) {
                 return Err(wrong(
-                    format!("'{name}' cannot be the name of a directory in the batch's"),
-                    "name the pair with letters, digits, `.`, `_` and `-`, beginning with none of the last three",
+                    format!("'{name}' cannot be the name of a directory"),
+                    "name the pair with letters, digits, `.`, `_` and `-`; a letter or a digit comes first",
                 ));
             }
             // Letters of either case are one where file systems think so.
             if let Some(line) = names.insert(name.to_lowercase(), row.line) {
                 return Err(wrong(
-                    format!("the pair of line {line} is named {name}, too"),
+                    format!("the pair on line {line} has the same name, {name}"),
                     "give each pair a name of its own in a column `name`",
                 ));
             }
@@ -131,7 +133,7 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     let words = of_no_row.chain(options.iter().cloned()).chain(files);
     match parse(words) {
         Ok(command) if command.dock.names_its_run() => Err(Failure::input(
-            "--output cannot come after --: where its runs go is the batch's to say",
+            "--output cannot stand after --: the batch chooses the directories of its runs",
         )
         .remedy("name the batch's own directory with -o before --")),
         Err(error)
@@ -140,7 +142,7 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
                 ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
             ) =>
         {
-            Err(Failure::input("no help can be asked for after --").remedy(remedy))
+            Err(Failure::input("--help cannot stand after --").remedy(remedy))
         }
         Err(error)
             if error.kind() == ErrorKind::UnknownArgument
@@ -148,15 +150,12 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
                     .iter()
                     .any(|file| first_paragraph(&error).contains(*file)) =>
         {
-            Err(
-                Failure::input("no file can come after --: files are the table's to name")
-                    .remedy(remedy),
-            )
+            Err(Failure::input("files cannot stand after --: the table names them").remedy(remedy))
         }
         // In conflict with the files are --rerun, which no row can do with, and --symmetry, which a row without a
         // ligand asks for.
         Err(error) if first_paragraph(&error).contains("--rerun") => Err(Failure::input(
-            "--rerun cannot come after --: what is docked is the table's to say",
+            "--rerun cannot stand after --: the table says what is docked",
         )
         .remedy(remedy)),
         Err(error)
@@ -200,12 +199,20 @@ fn command(
         if PLACE.contains(&column.as_str()) {
             return Err((format!("a column cannot be `{column}`"), None));
         }
-        let value = if names_files(column) {
+        let of_files = option_named(column).filter(|option| option.is_of_files());
+        let is_file = match of_files {
+            Some(option) => option.names_file(),
+            None => names_files(column) && !(column == CONFIG && value.contains('=')),
+        };
+        let value = if is_file {
             at(folder, value)
         } else {
             value.clone()
         };
-        words.push(format!("--{}={value}", column.replace('_', "-")));
+        words.push(match of_files {
+            Some(option) => format!("--{CONFIG}={}", option.line(&value)),
+            None => format!("--{}={value}", column.replace('_', "-")),
+        });
     }
     words.push(format!("--output={}", run.display()));
     words.extend(options.iter().cloned());

@@ -103,20 +103,19 @@ impl Bodies {
         }
     }
 
-    /// Reports what was read, with warnings; of a ring, the one molecule that it is made of.
+    /// Reports what was read, with warnings; of a ring, the one molecule that it is made of. A line each, or all that is
+    /// known where the console wants details.
     pub fn describe(&self, arrangement: Arrangement, console: Console) {
         match self {
             Self::Molecules(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
                 if arrangement.is_ring() {
-                    let report = &receptor.molecule.report;
                     let (what, suffix) = (arrangement.moved(), arrangement.suffix());
-                    return console.say(format!("Each {what}{suffix}: {report}"));
+                    return say_read(&format!("Each {what}{suffix}"), receptor, console);
                 }
-                console.say(format!(
-                    "Receptor: {}\nLigand: {}",
-                    receptor.molecule.report, ligand.molecule.report
-                ));
+                for (side, input) in SIDES.into_iter().zip([receptor, ligand]) {
+                    say_read(side, input, console);
+                }
             }
             Self::Meshes(inputs) => {
                 for (side, input) in SIDES.into_iter().zip(inputs.as_ref()) {
@@ -144,7 +143,7 @@ impl Bodies {
                 })
             }
             Self::Meshes(_) if options.search.symmetry.is_some() => Err(Failure::input(
-                "--symmetry makes rings of a molecule, and this is a mesh",
+                "--symmetry needs a molecule, and this is a mesh",
             )
             .remedy("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
@@ -269,6 +268,18 @@ pub fn spec_of(text: &str) -> Result<InputSpec, Failure> {
     }
 }
 
+/// Reports what was read of a molecule: a line and warnings, or all that is known.
+fn say_read(what: &str, input: &Input, console: Console) {
+    let report = &input.molecule.report;
+    if console.verbose {
+        return console.say(format!("{what}: {report}"));
+    }
+    console.say(format!("{what}: {}", report.brief()));
+    for warning in &report.warnings {
+        console.warn(format!("{}: {warning}", report.file));
+    }
+}
+
 /// Refuses the first option that is given and has no effect on such bodies: what was meant by it would not happen. An
 /// option at its default is no different from one that is not given. Weights of effects that are off are not refused:
 /// they say what the effect would weigh.
@@ -277,14 +288,14 @@ fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), 
         return Ok(());
     };
     let (of, these, remedy) = if are_meshes {
-        let remedy = "leave it out: of meshes the shape is all there is to score";
+        let remedy = "leave it out: meshes are scored by shape alone";
         ("molecules", "meshes", remedy)
     } else {
         let remedy = "leave it out: the balls of a molecule are its atoms";
         ("meshes", "molecules", remedy)
     };
     let long = option.long();
-    Err(Failure::input(format!("--{long} is of {of}, and these are {these}")).remedy(remedy))
+    Err(Failure::input(format!("--{long} is for {of}, and these are {these}")).remedy(remedy))
 }
 
 /// Meshes as balls. Options that follow from them are filled in, and what was made is said.
@@ -313,7 +324,10 @@ fn sampled(
     let solids = inputs.each_ref().map(ShapeInput::shape);
     let sampling = Sampling::of(solids, &sampling).map_err(|error| mesh_failure(&error, inputs))?;
     sampling.pair.defaults(options, given);
-    console.say(sampling_text(&sampling.pair));
+    console.say(match console.verbose {
+        true => sampling_text(&sampling.pair),
+        false => brief_sampling_text(&sampling.pair),
+    });
     Ok(sampling)
 }
 
@@ -324,6 +338,15 @@ fn mesh_failure(error: &MeshSceneError, inputs: &[ShapeInput; 2]) -> Failure {
         Some(part) => failure.at(&inputs[part].record().path),
         None => failure,
     }
+}
+
+/// The sampling of the meshes in a line.
+fn brief_sampling_text(pair: &MeshPair) -> String {
+    let [receptor, ligand] = pair.parts.each_ref();
+    format!(
+        "Sampled by {} and {} balls, whose surfaces are known within {:.2e} and {:.2e}; looks for a gap of {:.3e}",
+        receptor.balls, ligand.balls, receptor.epsilon, ligand.epsilon, pair.offset
+    )
 }
 
 /// Report on the sampling of the meshes.

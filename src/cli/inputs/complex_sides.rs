@@ -74,7 +74,7 @@ pub fn files_and_chains<'a>(
                 count => format!("{count} sides"),
             };
             return Err(Failure::input(format!(
-                "the chains of {sides} are named, and a complex has two"
+                "chains of {sides} are given, and a complex has two sides"
             ))
             .remedy(format!(
                 "name the chains of both sides behind the files, as in `knotdock {command} x.pdb H,L A`"
@@ -82,8 +82,8 @@ pub fn files_and_chains<'a>(
         }
     };
     if files.is_empty() {
-        return Err(Failure::input("no complex is named")
-            .remedy("name a file, whose name has a point or a folder in it, as in ./complex"));
+        return Err(Failure::input("no complex is given")
+            .remedy("give a file; its name needs a point or a folder, as in ./complex"));
     }
     Ok((files, chains))
 }
@@ -156,7 +156,7 @@ fn two_chains(
         .collect();
     <[String; 2]>::try_from(names).map_err(|names| {
         Failure::input(format!(
-            "which chains belong together is not known; the file has {}",
+            "it is not known which chains belong together; the file has {}",
             names.join(", ")
         ))
         .at(path)

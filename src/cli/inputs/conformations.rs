@@ -50,7 +50,7 @@ pub fn conformations(
             if !seen.insert((path, spec.chains.clone(), model)) {
                 return Err(Failure::input("the same conformation is named twice")
                     .at(&spec.path)
-                    .remedy("name each once: what several members find counts for more"));
+                    .remedy("name each conformation once"));
             }
             found.push(Conformation { name, spec });
         }
@@ -61,13 +61,11 @@ pub fn conformations(
 /// Refuses what is no molecule, and what can be read but once.
 fn check(spec: &InputSpec) -> Result<(), Failure> {
     if is_shape(&spec.path) {
-        return Err(
-            Failure::input("ensembles are of molecules, and this is none")
-                .at(&spec.path)
-                .remedy(
-                    "dock two meshes without --receptor-models, --receptor-also and their like",
-                ),
-        );
+        return Err(Failure::input(
+            "only molecules can be docked as ensembles, and this is a mesh",
+        )
+        .at(&spec.path)
+        .remedy("dock two meshes without --receptor-models, --receptor-also and their like"));
     }
     if is_stream(&spec.path) && !spec.path.is_dir() {
         return Err(Failure::input(

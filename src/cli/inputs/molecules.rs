@@ -236,10 +236,10 @@ fn check_used<'a>(
     }
     if options.model != ModelChoice::default() && !several {
         return Err(Failure::input(format!(
-            "--model {} is for files of several models, and none is one here",
+            "--model {} is for files of several models, and these have one",
             options.model
         ))
-        .remedy("leave it out: of a file with one model that is read"));
+        .remedy("leave it out: the one model of a file is read"));
     }
     Ok(())
 }

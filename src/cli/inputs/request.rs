@@ -122,10 +122,10 @@ impl Request {
                     native.evaluator(&receptor.molecule, &ligand.molecule)?,
                 ))
             }
-            (Some(_), Bodies::Meshes(_)) => {
-                Err(Failure::input("a known complex is one of molecules")
-                    .remedy("leave --native, --native-receptor and --native-ligand out"))
-            }
+            (Some(_), Bodies::Meshes(_)) => Err(Failure::input(
+                "a known complex is for molecules, and these are meshes",
+            )
+            .remedy("leave --native, --native-receptor and --native-ligand out")),
             (None, _) => Ok(None),
         }
     }

@@ -26,7 +26,7 @@ use crate::cli::messages::failure::Failure;
 pub struct SolidArguments {
     /// Nodes of the grid on which a mesh is sampled by balls, as 2^15 or 32768: the more, the closer its surface is
     /// known.
-    #[arg(long, value_name = "M", default_value = "2^15")]
+    #[arg(long, value_name = "COUNT", default_value = "2^15")]
     pub grid: SampleGrid,
     #[command(flatten)]
     pub input: InputOptions,
@@ -111,7 +111,7 @@ impl SolidInput {
         let mut warnings = report.warnings();
         if sampling.inward > sampling.grid_epsilon {
             warnings.push(format!(
-                "balls come only within {} of the surface, not within {}; a finer --grid may",
+                "the balls come within {} of the surface, not within {} as asked; a finer --grid comes closer",
                 Figure(sampling.inward),
                 Figure(sampling.grid_epsilon)
             ));

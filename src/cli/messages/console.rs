@@ -15,6 +15,7 @@ use std::time::Duration;
 use crate::progress::{Ended, Progress};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 
+use crate::cli::messages::colour::painted;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::listener::Listener;
 use crate::cli::messages::shown::{shown, shown_json};
@@ -88,7 +89,7 @@ impl<'a> Console<'a> {
             listener.warn(&text.to_string());
         } else {
             let text = format!("warning: {}", text.to_string());
-            write_line(&mut io::stderr(), &shown(&text));
+            write_line(&mut io::stderr(), &painted(&shown(&text)));
         }
     }
 
@@ -124,7 +125,7 @@ impl<'a> Console<'a> {
             let object = failure.json().to_string();
             write_line(&mut io::stdout(), &shown_json(&object));
         }
-        write_line(&mut io::stderr(), &shown(&failure.text()));
+        write_line(&mut io::stderr(), &painted(&shown(&failure.text())));
     }
 
     /// Tells whoever listens that a stage of so many steps begins; the terminal has lines of its own for them.

@@ -89,26 +89,32 @@ impl From<PotentialFileError> for Failure {
 
 impl From<ConfigError> for Failure {
     fn from(error: ConfigError) -> Self {
-        Self::input(&error)
-            .at(&error.path)
-            .on_line(error.line)
-            .remedy(error.remedy)
+        let of_named_file = error.refused.as_deref().and_then(fault_of_named_file);
+        of_named_file.unwrap_or_else(|| {
+            Self::input(&error)
+                .at(&error.path)
+                .on_line(error.line)
+                .remedy(&error.remedy)
+        })
     }
+}
+
+/// The fault in a file that an option names: it is read as the option is.
+pub fn fault_of_named_file(error: &clap::Error) -> Option<Failure> {
+    let source = error.source()?;
+    if let Some(error) = source.downcast_ref::<PotentialFileError>() {
+        return Some(error.clone().into());
+    }
+    if let Some(error) = source.downcast_ref::<PredictionError>() {
+        return Some(error.clone().into());
+    }
+    let error = source.downcast_ref::<RestraintFileError>()?;
+    Some(error.clone().into())
 }
 
 impl From<clap::Error> for Failure {
     fn from(error: clap::Error) -> Self {
-        let source = error.source();
-        if let Some(error) = source.and_then(|source| source.downcast_ref::<PotentialFileError>()) {
-            return error.clone().into();
-        }
-        if let Some(error) = source.and_then(|source| source.downcast_ref::<PredictionError>()) {
-            return error.clone().into();
-        }
-        match source.and_then(|source| source.downcast_ref::<RestraintFileError>()) {
-            Some(error) => error.clone().into(),
-            None => Self::input(first_paragraph(&error)),
-        }
+        fault_of_named_file(&error).unwrap_or_else(|| Self::input(first_paragraph(&error)))
     }
 }
 

@@ -51,7 +51,7 @@ impl Sample {
             if files[..index].iter().any(|other| is_same(other, file)) {
                 return Err(Failure::input("the same file is named twice")
                     .at(file)
-                    .remedy("give each file to write a name of its own"));
+                    .remedy("give each output file its own name"));
             }
             check_output(file, [self.mesh.as_path()], self.force)?;
         }

@@ -36,7 +36,7 @@ pub struct Sample {
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Nodes of the grid, as 2^18 or 262144: a cube of the nearest whole number of nodes an axis.
-    #[arg(long, value_name = "M", default_value = "2^18")]
+    #[arg(long, value_name = "COUNT", default_value = "2^18")]
     grid: SampleGrid,
     /// How balls are chosen.
     #[arg(long, value_enum, default_value_t = MethodName::Bi)]
@@ -253,14 +253,12 @@ impl Sample {
     /// The method with its options; options of other methods, and of weights that are not fitted, are refused.
     fn method(&self) -> Result<Method, Failure> {
         if self.method != MethodName::Bi && (self.mu.is_some() || self.set.is_some()) {
-            return Err(Failure::input("--mu and --set belong to method bi")
+            return Err(Failure::input("--mu and --set need --method bi")
                 .remedy("leave them out, or sample with --method bi"));
         }
         if self.weights != Weights::Fitted && self.alpha.is_some() {
-            return Err(
-                Failure::input("--alpha is of the bump that weights are fitted for")
-                    .remedy("add --weights fitted, or leave --alpha out"),
-            );
+            return Err(Failure::input("--alpha needs --weights fitted")
+                .remedy("add --weights fitted, or leave --alpha out"));
         }
         Ok(match self.method {
             MethodName::Bi => {

@@ -12,7 +12,7 @@ pub enum StagingError {
     #[error("{} already holds a run", .0.display())]
     ExistingRun(PathBuf),
     /// The directory holds a run without its record, and overwriting it was not requested.
-    #[error("{} holds a broken run: {record} is missing or torn", directory.display())]
+    #[error("{} holds a broken run: {record} is missing or damaged", directory.display())]
     BrokenRun {
         /// The directory.
         directory: PathBuf,

@@ -52,7 +52,7 @@ impl Journal {
                 if let Some(file) = files.iter().find(|file| file.exists()) {
                     return Err(ShardError::wrong(
                         file,
-                        "the file is of no shard: there is no shard.json beside it",
+                        "the file belongs to no shard: there is no shard.json beside it",
                         "choose another directory with -o, or move the file away",
                     ));
                 }

@@ -148,7 +148,7 @@ pub fn check_places(
     const REMEDY: &str = "choose another directory with -o, or move the file away";
     let results = out.join(RESULTS);
     if !is_ours(&results) {
-        let message = "this is no table of a batch's results";
+        let message = "this is not a table of results of a batch";
         return Err(ShardError::wrong(&results, message, REMEDY));
     }
     if let (Some(names), true) = (names, results.exists()) {
@@ -166,7 +166,7 @@ pub fn check_places(
     }
     let poses = out.join(POSES);
     if has_poses && poses.exists() && !is_of_poses(&poses) {
-        let message = "this is no file of a batch's poses";
+        let message = "this is not a file of poses of a batch";
         return Err(ShardError::wrong(&poses, message, REMEDY));
     }
     Ok(())

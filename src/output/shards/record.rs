@@ -91,7 +91,7 @@ impl ShardRecord {
         }
         let bytes = read_bounded_file(&path, MAX_RECORD).map_err(ShardError::reading(&path))?;
         serde_json::from_slice(&bytes).map(Some).map_err(|error| {
-            let message = format!("this is no record of a shard: {error}");
+            let message = format!("this is not the record of a shard: {error}");
             ShardError::wrong(
                 &path,
                 message,

@@ -67,7 +67,7 @@ pub(super) fn rows(path: &std::path::Path, bytes: &[u8]) -> Result<Vec<ResultRow
     if !bytes.starts_with(&head) {
         return Err(ShardError::wrong(
             path,
-            "this is no table of a shard's results",
+            "this is not a table of results of a shard",
             "remove the shard's folder, and dock it again",
         ));
     }

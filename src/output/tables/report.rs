@@ -14,7 +14,7 @@ pub const BEST: usize = 10;
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
-    let header = ["rank", "score", "cluster size", "pose score", "z-score"];
+    let header = ["rank", "score", "size", "pose score", "z-score"];
     let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
     header.extend(appended.iter().map(|column| column.name.clone()));
     let mut lines = vec![header];

@@ -98,14 +98,14 @@ fn malformed_tables_are_refused_by_line() {
         (
             "# a\nreceptor,ligand,weight\n",
             2,
-            "there is no use for a column `weight`",
+            "column `weight` is not known",
         ),
         (
             "receptor,ligand,ligand\n",
             1,
             "there are two columns `ligand`",
         ),
-        ("A:10,B:20,8\n", 1, "there is no use for a column `a:10`"),
+        ("A:10,B:20,8\n", 1, "column `a:10` is not known"),
         (
             "receptor,ligand,upper\n\nA:10,B:20\n",
             3,

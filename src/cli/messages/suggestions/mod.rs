@@ -4,17 +4,40 @@
 
 mod words;
 
+use crate::options::option_named;
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use words::{COMMANDS, OPTIONS, Suggestion};
 
+/// The name in a word such as `--n_cores=4`.
+fn name_of(word: &str) -> &str {
+    let word = word.trim_start_matches('-');
+    word.split('=').next().unwrap_or(word)
+}
+
 /// What to use instead of a word that is no option or command.
 fn find(suggestions: &[Suggestion], word: &str) -> Option<&'static str> {
-    let word = word.trim_start_matches('-');
-    let word = word.split('=').next().unwrap_or(word);
-    let word = word.to_lowercase().replace('_', "-");
+    let word = name_of(word).to_lowercase().replace('_', "-");
     let known = |one: &&Suggestion| one.words.contains(&word.as_str());
     suggestions.iter().find(known).map(|one| one.instead)
+}
+
+/// What to use instead of a word that is no option of the command line.
+fn instead_of_option(word: &str) -> Option<String> {
+    let of_files = option_named(&name_of(word).replace('-', "_")).filter(|one| one.is_of_files());
+    if let Some(option) = of_files {
+        let (table, name) = (option.subject(), option.name());
+        return Some(format!(
+            "weights and potentials are set by a file: `{name} = VALUE` under [{table}] in --config FILE, or \
+             --config {table}.{name}=VALUE here"
+        ));
+    }
+    find(&OPTIONS, word).map(str::to_owned)
+}
+
+/// What to use instead of a word that is no command.
+fn instead_of_command(word: &str) -> Option<String> {
+    find(&COMMANDS, word).map(str::to_owned)
 }
 
 /// What to do about an error of the command line, where the field's word for something is at fault or one that is
@@ -31,12 +54,10 @@ pub fn suggested(error: &clap::Error) -> Option<String> {
     };
     match error.kind() {
         ErrorKind::UnknownArgument => text(ContextKind::InvalidArg)
-            .and_then(|word| find(&OPTIONS, word))
-            .map(str::to_owned)
+            .and_then(instead_of_option)
             .or_else(|| alike(ContextKind::SuggestedArg)),
         ErrorKind::InvalidSubcommand => text(ContextKind::InvalidSubcommand)
-            .and_then(|word| find(&COMMANDS, word))
-            .map(str::to_owned)
+            .and_then(instead_of_command)
             .or_else(|| alike(ContextKind::SuggestedSubcommand)),
         ErrorKind::InvalidValue => alike(ContextKind::SuggestedValue),
         _ => None,
@@ -45,14 +66,14 @@ pub fn suggested(error: &clap::Error) -> Option<String> {
 
 /// The error with the field's word explained, in place of what is spelled alike.
 pub fn explained(mut error: clap::Error) -> clap::Error {
-    let word = match error.kind() {
-        ErrorKind::UnknownArgument => (&OPTIONS[..], ContextKind::InvalidArg),
-        ErrorKind::InvalidSubcommand => (&COMMANDS[..], ContextKind::InvalidSubcommand),
+    type Instead = fn(&str) -> Option<String>;
+    let (find, kind): (Instead, _) = match error.kind() {
+        ErrorKind::UnknownArgument => (instead_of_option, ContextKind::InvalidArg),
+        ErrorKind::InvalidSubcommand => (instead_of_command, ContextKind::InvalidSubcommand),
         _ => return error,
     };
-    let (suggestions, kind) = word;
     let found = match error.get(kind) {
-        Some(ContextValue::String(word)) => find(suggestions, word),
+        Some(ContextValue::String(word)) => find(word),
         _ => None,
     };
     if let Some(instead) = found {

@@ -266,7 +266,7 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 26] = [
             "desolvation",
             "contact",
         ],
-        "use `--effects shape,electrostatics,contact` for the terms of the score, and their `--...-weight` options",
+        "use `--effects shape,electrostatics,contact` for what scores, and `--config FILE` for its weights and potentials",
     ),
     suggestion(
         &[
@@ -276,7 +276,7 @@ pub(in crate::cli) const OPTIONS: [Suggestion; 26] = [
     ),
     suggestion(
         &["ensemble", "multi-model", "nmr", "conformers"],
-        "one model of a file is docked: `--model N` picks it; a table of `knotdock batch` with a column `model` docks each",
+        "use `--receptor-models all` or `--ligand-models all` for the models of a file, and `--receptor-also FILE` or `--ligand-also FILE` for further files",
     ),
     suggestion(
         &[

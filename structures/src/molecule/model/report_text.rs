@@ -1,18 +1,23 @@
 //! The report of reading a file, in words.
 
 use std::fmt;
+use std::path::Path;
 
 use crate::molecule::model::report::{Altered, ConfidenceSource, DropKind, Dropped, ReadReport};
 use crate::molecule::model::wording::{count, show_chain};
 
 /// Joins the first few of a list and counts the rest.
 fn list(items: impl Iterator<Item = String>) -> String {
-    const SHOWN: usize = 8;
+    first(8, items)
+}
+
+/// Joins the first so many of a list and counts the rest.
+fn first(shown: usize, items: impl Iterator<Item = String>) -> String {
     let items: Vec<String> = items.collect();
-    let rest = items.len().saturating_sub(SHOWN);
+    let rest = items.len().saturating_sub(shown);
     let mut text = items
         .iter()
-        .take(SHOWN)
+        .take(shown)
         .cloned()
         .collect::<Vec<_>>()
         .join(", ");
@@ -36,6 +41,49 @@ impl fmt::Display for ReadReport {
 }
 
 impl ReadReport {
+    /// The report in a line, without warnings: the file's name, what is kept, and what is dropped or in doubt.
+    pub fn brief(&self) -> String {
+        const SHOWN: usize = 3;
+        let file = Path::new(&self.file);
+        let name = file.file_name().unwrap_or(file.as_os_str());
+        let residues: usize = self.chains.iter().map(|chain| chain.residues).sum();
+        let chains = self.chains.iter();
+        let mut parts = vec![format!(
+            "{}: {} in {} {}",
+            name.to_string_lossy(),
+            count(residues, "residue"),
+            if self.chains.len() == 1 {
+                "chain"
+            } else {
+                "chains"
+            },
+            list(chains.map(|chain| show_chain(&chain.name).to_owned()))
+        )];
+        if !self.groups.is_empty() {
+            let groups = self.groups.iter();
+            let groups = groups.map(|group| format!("{} {}", group.residues, group.name));
+            parts.push(format!("kept {}", first(SHOWN, groups)));
+        }
+        if !self.dropped.is_empty() {
+            let dropped = self.dropped.iter().map(show_dropped);
+            parts.push(format!("dropped {}", first(SHOWN, dropped)));
+        }
+        if self.altered.models_ignored > 0 {
+            let models = count(self.altered.models_ignored, "other model");
+            parts.push(format!("{models} ignored"));
+        }
+        if let Some(built) = &self.assembly {
+            parts.push(format!("biological assembly {}", built.id));
+        }
+        if let Some(joined) = &self.joined_models {
+            parts.push(format!("{} as one molecule", count(joined.models, "model")));
+        }
+        if let Some(confidence) = &self.confidence {
+            parts.push(format!("predicted, mean pLDDT {:.1}", confidence.mean));
+        }
+        parts.join("; ")
+    }
+
     /// Writes the atoms, residues and chains that are kept.
     fn write_contents(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let atoms: usize = self.chains.iter().map(|chain| chain.atoms).sum();

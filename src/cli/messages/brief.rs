@@ -1,0 +1,189 @@
+//! What `knotdock dock` says without `--verbose`: what is scored and why, what is expected, what it cost, and what to do
+//! next.
+
+use std::path::Path;
+
+use crate::cli::docking::Docking;
+use crate::dock::outcome::DockOutcome;
+use crate::dock::plan::DockPlan;
+use crate::options::EngineChoice;
+use crate::output::files::seal::REPORT;
+use crate::output::tables::report::counted;
+use crate::rank::sharp::SharpFinding;
+use crate::tradeoff::choice::Chosen;
+use knotdock_scoring::terms::effect::Effect;
+use knotdock_structures::molecule::LabelReport;
+
+use crate::cli::messages::dock::known_text;
+
+/// The effects that score and why, and what is known of the complex. Of the effects that do not score those that the
+/// inputs call for and lack something.
+pub fn score_text(plan: &DockPlan, sides: &[&str]) -> String {
+    let words = |on: bool| -> Vec<String> {
+        let decided = plan.decisions.iter().filter(|decision| decision.on == on);
+        // Nothing is known of most complexes.
+        let decided = decided.filter(|decision| on || decision.effect != Effect::Restraint);
+        decided
+            .map(|decision| match (decision.on, decision.effect) {
+                (true, Effect::Shape) => "shape".to_owned(),
+                (_, effect) => format!("{effect} ({})", decision.reason),
+            })
+            .collect()
+    };
+    let mut text = format!("Scored by {}", words(true).join(", "));
+    if let Some(site) = plan.active_site() {
+        text += &format!(", active site ({site})");
+    }
+    let off = words(false);
+    if !off.is_empty() {
+        text += &format!("; not by {}", off.join(", "));
+    }
+    for known in known_text(sides, &plan.restraints) {
+        text += &format!("; {known}");
+    }
+    let unknown: Vec<String> = plan.labels.iter().filter_map(unknown_text).collect();
+    if !unknown.is_empty() {
+        text += &format!(
+            "; no charges or contact types are known for {}",
+            unknown.join(", ")
+        );
+    }
+    text
+}
+
+/// Residues of one side whose charges or contact types are not known.
+fn unknown_text(labels: &LabelReport) -> Option<String> {
+    let names = labels
+        .unknown_charges
+        .keys()
+        .chain(labels.unknown_types.keys());
+    let mut names: Vec<&str> = names.map(String::as_str).collect();
+    names.sort_unstable();
+    names.dedup();
+    (!names.is_empty()).then(|| names.join(", "))
+}
+
+/// How many rotations are searched, and the time and memory that the search is expected to take; of the CPU in
+/// `seconds`, where they are known.
+pub fn expected_text(plan: &DockPlan, seconds: f64, chosen: Option<&Chosen>) -> String {
+    let rotations = plan.search.space.sampled(plan.rotations);
+    let mut text = format!("Searches {} {rotations}", plan.rotations);
+    if let Some(finer) = plan.options.search.fine_rotations {
+        text += &format!(", then {finer} finer ones about the best");
+    }
+    let memory = plan.memory_bytes() as f64 / 1e6;
+    text += &match plan.options.search.engine {
+        EngineChoice::Gpu => format!(" on a graphics processor, in {memory:.0} MB"),
+        EngineChoice::Cpu => format!(
+            ": about {} and {memory:.0} MB on {}",
+            time_text(seconds),
+            counted(plan.in_flight(), "thread")
+        ),
+    };
+    if let Some(chosen) = chosen {
+        let options = &plan.options;
+        text += &format!(
+            "; chosen: --tolerance {} and a spacing of {:.4}",
+            options.kernel.tolerance, plan.spacing
+        );
+        if let Some(error) = chosen.predicted_error {
+            text += &format!(", for an error of {error:.1e}");
+        }
+    }
+    text
+}
+
+/// A time as people say it.
+fn time_text(seconds: f64) -> String {
+    match seconds {
+        s if s < 10.0 => format!("{s:.1} s"),
+        s if s < 120.0 => format!("{s:.0} s"),
+        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
+        s => format!("{:.1} h", s / 3600.0),
+    }
+}
+
+/// What a finished run cost, how far the fast path was from the exact score, and what else decided the ranking.
+pub fn cost_text(docking: &Docking, outcome: &DockOutcome) -> String {
+    let costs = outcome.effects.iter().filter(|cost| cost.on);
+    let costs: Vec<String> = costs
+        .map(|cost| {
+            let time = cost.milliseconds_per_rotation.max(0.0);
+            format!("{} {time:.2} ms", cost.effect)
+        })
+        .collect();
+    let mut lines = vec![format!(
+        "Took {:.1} s; a rotation takes {}",
+        docking.clock.seconds(),
+        costs.join(", ")
+    )];
+    if let Some(adapter) = &outcome.adapter {
+        lines.push(format!("Searched on {}", adapter.name));
+    }
+    if outcome.error.worst.is_finite() {
+        lines.push(format!(
+            "Error of the fast path: at most {:.1e} of the best score, over {} scored exactly",
+            outcome.error.worst,
+            counted(outcome.error.poses, "pose")
+        ));
+    }
+    if let Some(stopped) = outcome.stopped {
+        lines.push(format!(
+            "Stopped for the time: {} of {} rotations were searched",
+            stopped.rotations, docking.prepared.plan.rotations
+        ));
+    }
+    match outcome.sharp.as_ref().map(|sharp| sharp.finding) {
+        Some(SharpFinding::ExactFit) => {
+            lines.push("An exact fit stands out: ranked by fits at atomic resolution".to_owned());
+        }
+        Some(SharpFinding::Requested) => {
+            lines.push("Ranked by fits at atomic resolution, though none stands out".to_owned());
+        }
+        Some(SharpFinding::NoExactFit) | None => {}
+    }
+    lines.join("\n")
+}
+
+/// Where the results are, and what can be done with them.
+pub fn next_text(
+    directory: &Path,
+    outcome: &DockOutcome,
+    written: usize,
+    has_report: bool,
+) -> String {
+    let directory = directory.display();
+    let rows = outcome.poses.len();
+    let listed = match rows == outcome.clusters {
+        true => counted(rows, "cluster"),
+        false => counted(rows, "pose"),
+    };
+    let mut steps = Vec::new();
+    if has_report {
+        steps.push((
+            format!("open {directory}/{REPORT}"),
+            "look at them in a browser".to_owned(),
+        ));
+    }
+    if written < rows {
+        let ranks = match (written + 1, rows.min(written + 10)) {
+            (first, last) if first == last => first.to_string(),
+            (first, last) => format!("{first}-{last}"),
+        };
+        steps.push((
+            format!("knotdock export {directory} --rank {ranks}"),
+            format!("more complexes than the {written} in {directory}/top"),
+        ));
+    }
+    let widest = steps
+        .iter()
+        .map(|(command, _)| command.chars().count())
+        .max();
+    let steps = steps.iter().map(|(command, what)| {
+        format!("\n  {command:<width$}  {what}", width = widest.unwrap_or(0))
+    });
+    format!(
+        "{listed} in {directory}/poses.csv{}",
+        steps.collect::<String>()
+    )
+}
