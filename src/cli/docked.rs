@@ -265,7 +265,7 @@ impl Docked {
         if let Some(warning) = few_rotations_warning(outcome, docking.deadline.is_some()) {
             console.warn(warning);
         }
-        console.say(cost_text(docking, outcome));
+        console.say(cost_text(plan, outcome, docking.clock.seconds()));
         let output = &docking.request.options.output;
         console.say(next_text(
             &docking.directory,

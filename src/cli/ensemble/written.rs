@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use crate::ensemble::table::{DockedMember, JointTable};
+use crate::output::files::seal::REPORT;
 use crate::output::files::staging::Staging;
 use crate::output::files::viewers::ViewedComplex;
 use crate::output::files::whole_file::to_json;
@@ -137,16 +138,24 @@ impl Ensemble {
     /// Reports the joint ranking.
     fn report(&self, joint: &JointTable, console: Console) {
         console.say(format!(
-            "\nAll members together, {} in {:.1} s:\n\n{}",
+            "\n{}\n\nAll {} together (rec and lig are the conformations): {} in {:.1} s",
+            best_rows(&joint.table, joint.firsts()),
+            counted(self.members().len(), "run"),
             counted(joint.clusters, "cluster"),
             self.clock.seconds(),
-            best_rows(&joint.table, joint.firsts())
+        ));
+        let directory = self.directory.display();
+        console.say(format!(
+            "Effects, errors and times of each are in {directory}/{MEMBERS}/*/run.json"
         ));
         console.say(format!(
-            "\n{} in {}; effects, measured errors and times of each member are in {}",
+            "{} in {directory}/poses.csv",
             counted(joint.table.rows().len(), "row"),
-            self.directory.join("poses.csv").display(),
-            self.directory.join(MEMBERS).join("*/run.json").display()
         ));
+        if !self.given.options.output.no_report {
+            console.say(format!(
+                "  open {directory}/{REPORT}  look at them in a browser"
+            ));
+        }
     }
 }

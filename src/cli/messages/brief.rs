@@ -3,7 +3,6 @@
 
 use std::path::Path;
 
-use crate::cli::docking::Docking;
 use crate::dock::outcome::DockOutcome;
 use crate::dock::plan::DockPlan;
 use crate::options::EngineChoice;
@@ -103,8 +102,8 @@ fn time_text(seconds: f64) -> String {
     }
 }
 
-/// What a finished run cost, how far the fast path was from the exact score, and what else decided the ranking.
-pub fn cost_text(docking: &Docking, outcome: &DockOutcome) -> String {
+/// What a finished run of so many seconds cost, how far the fast path was from the exact score, and what else decided the ranking.
+pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String {
     let costs = outcome.effects.iter().filter(|cost| cost.on);
     let costs: Vec<String> = costs
         .map(|cost| {
@@ -114,7 +113,7 @@ pub fn cost_text(docking: &Docking, outcome: &DockOutcome) -> String {
         .collect();
     let mut lines = vec![format!(
         "Took {:.1} s; a rotation takes {}",
-        docking.clock.seconds(),
+        seconds,
         costs.join(", ")
     )];
     if let Some(adapter) = &outcome.adapter {
@@ -130,7 +129,7 @@ pub fn cost_text(docking: &Docking, outcome: &DockOutcome) -> String {
     if let Some(stopped) = outcome.stopped {
         lines.push(format!(
             "Stopped for the time: {} of {} rotations were searched",
-            stopped.rotations, docking.prepared.plan.rotations
+            stopped.rotations, plan.rotations
         ));
     }
     match outcome.sharp.as_ref().map(|sharp| sharp.finding) {

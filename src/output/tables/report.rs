@@ -71,7 +71,14 @@ const OF_ENSEMBLES: [&str; 13] = [
 pub fn best_rows(table: &PoseTable, rows: Vec<usize>) -> String {
     let has = |name: &&str| table.header.iter().any(|column| column == *name);
     let columns: Vec<&str> = OF_ENSEMBLES.into_iter().filter(has).collect();
-    let mut lines = vec![columns.iter().map(|name| name.replace('_', " ")).collect()];
+    let heading = |name: &&str| match *name {
+        "cluster_size" => "size".to_owned(),
+        "receptor_model" => "rec".to_owned(),
+        "ligand_model" => "lig".to_owned(),
+        "z_score" => "z-score".to_owned(),
+        name => name.replace('_', " "),
+    };
+    let mut lines = vec![columns.iter().map(heading).collect()];
     for row in table.objects(rows.into_iter().take(BEST)) {
         let field = |name: &&str| match (&row[*name], *name) {
             (Value::Null, _) => String::new(),
@@ -184,16 +191,15 @@ mod tests {
             fields: ["3", "0", "1", "2", "3", "0"].map(str::to_owned).to_vec(),
         };
         assert!(
-            best_clusters(&ranking, &[met])
-                .contains("   4    6.0             2         6.0             2")
+            best_clusters(&ranking, &[met]).contains("   4    6.0     2         6.0             2")
         );
         assert_eq!(
             best_clusters(&ranking, &[irmsd]),
-            "  rank  score  cluster size  pose score  z-score  irmsd\n\
-             \x20    1    9.0             2         9.0            1.23\n\
-             \x20    4    6.0             2         6.0            3.50\n\
-             \x20    3    7.0                       7.0\n\
-             \x20    5    5.0                       5.0"
+            "  rank  score  size  pose score  z-score  irmsd\n\
+             \x20    1    9.0     2         9.0            1.23\n\
+             \x20    4    6.0     2         6.0            3.50\n\
+             \x20    3    7.0               7.0\n\
+             \x20    5    5.0               5.0"
         );
     }
 
@@ -209,9 +215,9 @@ mod tests {
         let ranking = [in_company(8.0, 1, 11.0), in_company(9.0, 2, 10.0)];
         assert_eq!(
             best_clusters(&ranking, &[]),
-            "  rank  score  cluster size  pose score  z-score\n\
-             \x20    1   11.0             2         8.0\n\
-             \x20    2   10.0             2         9.0"
+            "  rank  score  size  pose score  z-score\n\
+             \x20    1   11.0     2         8.0\n\
+             \x20    2   10.0     2         9.0"
         );
     }
 }
