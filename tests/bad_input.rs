@@ -181,7 +181,7 @@ fn a_model_that_is_not_there_and_nothing_left() {
     says(&error, "cannot write");
     says(
         &place.refused(&["inspect", "receptor.pdb", "--model", "2"]),
-        "none is one here",
+        "these have one",
     );
     // What the run recorded does not go with --rerun.
     place.refused(&["dock", "--rerun", "run.json", "--waters", "keep"]);
@@ -317,7 +317,7 @@ fn a_negative_number_is_judged_as_the_value_that_it_is() {
 #[test]
 fn no_file_is_written_over_one_that_is_read_nor_over_another_unasked() {
     let place = Place::new();
-    let same = "is one of those read";
+    let same = "is one of the input files";
     let ligand = fs::read(place.path().join("ligand.pdb")).unwrap();
     for name in ["ligand.pdb", "./ligand.pdb"] {
         let inspect = ["inspect", "ligand.pdb", "--atoms", name, "--force"];
@@ -327,7 +327,7 @@ fn no_file_is_written_over_one_that_is_read_nor_over_another_unasked() {
     let inspect = ["inspect", "ligand.pdb", "--atoms", "notes.txt"];
     says(&place.refused(&inspect), "already there");
     let calibrate = ["calibrate", "-o", "notes.txt"];
-    says(&place.refused(&calibrate), "holds no cost model");
+    says(&place.refused(&calibrate), "is not a cost model");
     let poses = "rank,qw,qx,qy,qz,tx,ty,tz\n1,1,0,0,0,0,0,0\n";
     place.write("poses.csv", poses);
     let molecules = ["receptor.pdb", "ligand.pdb"];

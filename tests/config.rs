@@ -121,7 +121,6 @@ fn what_is_wrong_with_a_file_is_reported_with_its_line() {
         ("[search]\nturns = 9\n", 2, "no option `turns`"),
         ("[speed]\nrotations = 9\n", 1, "`speed`"),
         ("rotations = 9\n", 1, "`rotations`"),
-        ("[terms]\n\ncontact_potential = \"no.csv\"\n", 3, "No such"),
     ] {
         fs::write(folder.path().join("wrong.toml"), text).unwrap();
         let error = refused(
@@ -133,6 +132,17 @@ fn what_is_wrong_with_a_file_is_reported_with_its_line() {
         assert!(error["message"].as_str().unwrap().contains(part), "{error}");
         assert!(error["remedy"].is_string());
     }
+    // A file that it names has faults of its own.
+    let text = "[terms]\n\ncontact_potential = \"no.csv\"\n";
+    fs::write(folder.path().join("wrong.toml"), text).unwrap();
+    let pair = "dock receptor.pdb ligand.pdb --config wrong.toml";
+    let error = refused(folder.path(), pair);
+    assert_eq!(error["file"], "no.csv");
+    let remedy = error["remedy"].as_str().unwrap();
+    assert!(
+        remedy.ends_with("wrong.toml, line 3 names the file"),
+        "{remedy}"
+    );
     // What the file says counts as given: molecules have no grid.
     fs::write(
         folder.path().join("meshes.toml"),
@@ -143,7 +153,7 @@ fn what_is_wrong_with_a_file_is_reported_with_its_line() {
         folder.path(),
         "dock receptor.pdb ligand.pdb --config meshes.toml",
     );
-    assert!(error["message"].as_str().unwrap().contains("of meshes"));
+    assert!(error["message"].as_str().unwrap().contains("for meshes"));
     refused(folder.path(), "dock --config quick.toml --rerun run.json");
     refused(folder.path(), "dock receptor.pdb --config quick.toml");
 }

@@ -302,7 +302,7 @@ fn what_is_no_ensemble_is_refused() {
         ),
         (
             "receptor.pdb ligand.pdb --receptor-also ball.obj",
-            "of molecules",
+            "only molecules",
         ),
         (
             "receptor.pdb --symmetry C2 --receptor-models all",

@@ -295,7 +295,7 @@ fn a_table_that_is_none_is_refused_before_anything_runs() {
             format!("receptor,ligand\n{pair}\n{pair}\n"),
             "",
             Some(3),
-            "of line 2",
+            "on line 2",
         ),
         (
             format!("name,receptor,ligand\n../x,{pair}\n"),
@@ -371,9 +371,9 @@ fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
     for (words, expected) in [
         ("--frob", "unexpected argument '--frob'"),
         ("--rotations 0", "invalid value '0'"),
-        ("--help", "no help"),
+        ("--help", "--help cannot stand after --"),
         ("--lambda -1", "invalid value '-1' for '--lambda"),
-        ("extra.pdb", "no file can come after --"),
+        ("extra.pdb", "files cannot stand after --"),
         ("--budget 5s --rotations 5", "cannot be used with"),
         ("--rerun run.json", "--rerun cannot stand after --"),
         ("-o elsewhere", "--output cannot stand after --"),

@@ -237,7 +237,7 @@ fn failed_and_damaged_pairs_are_docked_again() {
     fs::write(&poses, bytes).unwrap();
     let mended = batch(root, &call);
     assert!(mended.status.success());
-    assert!(String::from_utf8_lossy(&mended.stderr).contains("had no whole poses"));
+    assert!(String::from_utf8_lossy(&mended.stderr).contains("had incomplete poses"));
     assert!(tables(root, "out") == expected);
 }
 
@@ -304,11 +304,11 @@ fn what_does_not_belong_together_is_refused() {
         );
     }
     refused("batch in/pairs.csv -o out --rows 0", "or `all`");
-    refused("batch in/pairs.csv -o out --scratch near", "of shards");
-    refused("batch in/pairs.csv -o out --rows 5", "no such file is kept");
+    refused("batch in/pairs.csv -o out --scratch near", "need shards");
+    refused("batch in/pairs.csv -o out --rows 5", "does not keep");
     refused(
         "batch in/pairs.csv -o out --keep none --rows all",
-        "no such file is kept",
+        "does not keep",
     );
     refused("merge in", "no shards");
     let shard = |words: &str| {
@@ -329,7 +329,7 @@ fn what_does_not_belong_together_is_refused() {
     refused("merge out --partial", "of other pairs or options");
     fs::remove_dir_all(root.join("out/shards/0003-of-0003")).unwrap();
     refused("merge out out -o both", "shard 1/2 is in");
-    refused("merge out in", "none is named");
+    refused("merge out in", "it is not known where");
     // Files of the user's, and tables of other pairs, stay.
     let poses = root.join("out/poses.csv.gz");
     let (table, merged) = (

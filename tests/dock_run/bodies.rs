@@ -104,7 +104,7 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
         ("run --rank 2 -o more", "is not what would be written"),
         ("run --rank 1", "is not what would be written"),
         ("run --rank 3", "is not what would be written"),
-        ("other --rank 2 -o . --force", "one of those read"),
+        ("other --rank 2 -o . --force", "one of the input files"),
     ] {
         let failed = cargo_bin_cmd!("knotdock")
             .current_dir(folder.path())

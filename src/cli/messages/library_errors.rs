@@ -90,12 +90,20 @@ impl From<PotentialFileError> for Failure {
 impl From<ConfigError> for Failure {
     fn from(error: ConfigError) -> Self {
         let of_named_file = error.refused.as_deref().and_then(fault_of_named_file);
-        of_named_file.unwrap_or_else(|| {
-            Self::input(&error)
-                .at(&error.path)
-                .on_line(error.line)
-                .remedy(&error.remedy)
-        })
+        if let Some(failure) = of_named_file {
+            let advice = failure.advice().unwrap_or_default();
+            let line = error.line.map(|line| format!(", line {line}"));
+            let named = format!(
+                "{advice}; {}{} names the file",
+                error.path.display(),
+                line.unwrap_or_default()
+            );
+            return failure.remedy(named);
+        }
+        Self::input(&error)
+            .at(&error.path)
+            .on_line(error.line)
+            .remedy(&error.remedy)
     }
 }
 
