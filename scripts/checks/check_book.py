@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Run the commands of the book's Start and Guides, and compare what they print with the pages.
 
-usage: check_book.py PROGRAM [--page PART_OF_NAME ...] [--keep]
+usage: check_book.py PROGRAM [--page PART_OF_NAME ...] [--jobs N] [--keep]
 
 Fenced blocks of a page, by the word behind the fence:
 
@@ -26,6 +26,7 @@ import subprocess
 import sys
 import tempfile
 import time
+from concurrent.futures import ThreadPoolExecutor, as_completed
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -225,8 +226,8 @@ def run_block(block: Block, page: Page, name: Path) -> None:
         raise Failure(f"{name}:{block.line}: this prints something else:\n{block.text}\n{told}")
 
 
-def run_page(path: Path, program: Path, options: Options, with_python: bool, keep: bool) -> None:
-    """Run a page's blocks; raises `Failure` at the first that fails or prints something else."""
+def run_page(path: Path, program: Path, options: Options, with_python: bool, keep: bool) -> str:
+    """Run a page's blocks, and say what ran; raises `Failure` at the first that fails or prints something else."""
     name = path.relative_to(ROOT)
     found = blocks(path)
     counts = {"sh": 0, "python": 0, "console": 0, "compared": 0}
@@ -251,13 +252,27 @@ def run_page(path: Path, program: Path, options: Options, with_python: bool, kee
             shutil.rmtree(folder)
     skipped = "" if with_python else ", python not run" * any(block.word == "python" for block in found)
     said = ", ".join(f"{count} {word}" for word, count in counts.items())
-    print(f"{name}: {said}{skipped}: {time.monotonic() - start:.1f} s", flush=True)
+    return f"{name}: {said}{skipped}: {time.monotonic() - start:.1f} s"
+
+
+def check_page(path: Path, program: Path, options: Options, with_python: bool, keep: bool) -> tuple[bool, str]:
+    """Whether a page is right, and what to print."""
+    try:
+        if path.parent.name != "reference":
+            return True, run_page(path, program, options, with_python, keep)
+        name = path.relative_to(ROOT)
+        for block in (block for block in blocks(path) if block.word == "console"):
+            look_up(block, name, options)
+        return True, f"{name}: read"
+    except Failure as failure:
+        return False, f"FAILED {failure}\n"
 
 
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
     parser.add_argument("--page", action="append", help="only pages whose path has this in it")
+    parser.add_argument("--jobs", type=int, default=2, help="pages that run at the same time")
     parser.add_argument("--keep", action="store_true", help="keep the folders of the pages")
     arguments = parser.parse_args()
     program = arguments.program.resolve()
@@ -270,16 +285,12 @@ def main() -> int:
         print("python3 has no knotdock here: blocks of Python are not run")
     options = Options(program)
     start, failed = time.monotonic(), 0
-    for path in wanted:
-        try:
-            if path.parent.name == "reference":
-                for block in (block for block in blocks(path) if block.word == "console"):
-                    look_up(block, path.relative_to(ROOT), options)
-            else:
-                run_page(path, program, options, with_python, arguments.keep)
-        except Failure as failure:
-            failed += 1
-            print(f"FAILED {failure}\n", flush=True)
+    with ThreadPoolExecutor(arguments.jobs) as pool:
+        waiting = [pool.submit(check_page, path, program, options, with_python, arguments.keep) for path in wanted]
+        for done in as_completed(waiting):
+            good, said = done.result()
+            failed += not good
+            print(said, flush=True)
     print(f"{len(wanted)} pages, {failed} failed, {time.monotonic() - start:.1f} s")
     return 1 if failed else 0
 
