@@ -63,7 +63,9 @@ def cell(text: str) -> str:
 
 
 def help_of(program: Path, words: list[str]) -> str:
-    done = subprocess.run(["knotdock", *words, "--help"], executable=program, capture_output=True, text=True, check=True)
+    done = subprocess.run(
+        ["knotdock", *words, "--help"], executable=program, capture_output=True, text=True, check=True
+    )
     return done.stdout
 
 
@@ -210,9 +212,11 @@ def options_page(program: Path) -> str:
                     same.setdefault(owner, []).append(each.long)
             if new:
                 parts.append(f"**{group}**\n\n{table(new, 'option')}")
-        for owner, names in same.items():
-            listed = ", ".join(f"`{name}`" for name in names)
-            parts.append(wrapped(f"As of [{owner}](#{anchor(owner)}): {listed}"))
+        rows = [
+            f"| [{owner}](#{anchor(owner)}) | {', '.join(f'`{n}`' for n in names)} |" for owner, names in same.items()
+        ]
+        if rows:
+            parts.append("\n".join(["| as of | options |", "|---|---|", *rows]))
     return "\n\n".join(parts) + "\n"
 
 
@@ -267,10 +271,10 @@ def check_files(program: Path) -> list[str]:
     pages = described(REFERENCE / "run_json.md")
     faults += compare("run.json", set(record), pages["The whole/entry"])
     for key, value in record.items():
-        listed = pages.get(f"{key}/entry")
-        if listed is not None and isinstance(value, dict):
-            faults += compare(f"run.json, {key}", set(value), listed)
-        elif listed is None and isinstance(value, dict) and key not in ("files", "match"):
+        entries = pages.get(f"{key}/entry")
+        if entries is not None and isinstance(value, dict):
+            faults += compare(f"run.json, {key}", set(value), entries)
+        elif entries is None and isinstance(value, dict) and key not in ("files", "match"):
             faults.append(f"run.json, {key}: there is no table of its entries")
     return faults
 

@@ -222,8 +222,8 @@ def run_block(block: Block, page: Page, name: Path) -> None:
     if not good:
         raise Failure(f"{name}:{block.line}: this failed:\n{block.text}\nIt printed:\n{printed}")
     if block.expected is not None and not agrees(squeezed(block.expected), squeezed(printed)):
-        told = difference(block.expected, printed)
-        raise Failure(f"{name}:{block.line}: this prints something else:\n{block.text}\n{told}")
+        change = difference(block.expected, printed)
+        raise Failure(f"{name}:{block.line}: this prints something else:\n{block.text}\n{change}")
 
 
 def run_page(path: Path, program: Path, options: Options, with_python: bool, keep: bool) -> str:
