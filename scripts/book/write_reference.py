@@ -26,6 +26,7 @@ EXAMPLES = ROOT / "structures" / "examples"
 SHARED = ("--json", "--quiet", "--verbose", "--help", "--version")
 """Options of all commands, described once."""
 DEFAULT = re.compile(r"\s*\[default: ([^\]]*)\]")
+POSSIBLE = re.compile(r"\.?\s*\[possible values: ([^\]]*)\]")
 
 
 @dataclass
@@ -55,6 +56,7 @@ class Command:
     usage: str = ""
     groups: dict[str, list[Entry]] = field(default_factory=dict)
     commands: dict[str, str] = field(default_factory=dict)
+    examples: list[str] = field(default_factory=list)
 
 
 def cell(text: str) -> str:
@@ -71,18 +73,26 @@ def help_of(program: Path, words: list[str]) -> str:
 
 def entry(name: str, lines: list[str]) -> Entry:
     """An entry from the lines below its name; possible values become a sentence each."""
-    said, values = [], []
+    said: list[str] = []
+    values: list[str] = []
+    part = said
     for line in (line.strip() for line in lines):
-        if line.startswith("- "):
-            value, _, meaning = line[2:].partition(":")
-            values.append(f"`{value.strip()}`: {meaning.strip()}" if meaning else f"`{value.strip()}`")
-        elif line and line != "Possible values:":
+        if line == "Possible values:":
+            part = values
+        elif not line or line.startswith("[default:"):
+            part = said
             said.append(line)
-    text = " ".join(said)
+        elif part is values and not line.startswith("- "):
+            values[-1] += f" {line}"
+        else:
+            part.append(line.removeprefix("- ") if part is values else line)
+    text = POSSIBLE.sub(r". One of \1.", " ".join(" ".join(said).split()))
     default = DEFAULT.search(text)
     text = DEFAULT.sub("", text).strip()
     if values:
-        text += ("" if text.endswith(".") else ".") + " " + "; ".join(values)
+        named = (value.partition(":") for value in values)
+        shown = "; ".join(f"`{value.strip()}`: {meaning.strip()}" for value, _, meaning in named)
+        text = text.rstrip(".") + f". {shown}"
     return Entry(name, text.replace("<", "\\<"), default[1] if default else "")
 
 
@@ -91,33 +101,40 @@ def read(program: Path, words: list[str]) -> Command:
     lines = help_of(program, words).splitlines()
     command = Command(" ".join(["knotdock", *words]))
     start = next(number for number, line in enumerate(lines) if line.startswith("Usage:"))
+    end = next(number for number in range(start, len(lines)) if not lines[number])
     command.about = "\n".join(lines[:start]).strip()
-    command.usage = lines[start].removeprefix("Usage:").strip()
-    group, name, held = "", "", []
-
-    def close() -> None:
-        nonlocal name, held
-        if name:
-            command.groups.setdefault(group, []).append(entry(name, held))
-        name, held = "", []
-
-    for line in lines[start + 1 :]:
+    command.usage = " ".join(" ".join(lines[start:end]).split()).removeprefix("Usage: ")
+    group, name = "", ""
+    held: list[str] = []
+    for line in [*lines[end:], "End:"]:
+        if re.match(r"\S", line) or re.match(r" {2,6}[-\[<]", line):
+            if name:
+                command.groups.setdefault(group, []).append(entry(name, held))
+            name, held = "", []
         if re.match(r"\S.*:$", line):
-            close()
             group = line[:-1]
         elif group == "Commands":
-            word, _, about = line.strip().partition(" ")
-            if word and word != "help":
-                command.commands[word] = about.strip()
+            read_command(command, line)
+        elif group == "Examples":
+            command.examples += [line.strip()] if line.startswith("  ") else []
         elif re.match(r" {2,6}[-\[<]", line):
-            close()
             # A short help has the meaning on the same line.
             name, _, meaning = line.strip().partition("   ")
             held = [meaning]
-        elif line.startswith(" ") or not line:
+        else:
             held.append(line)
-    close()
     return command
+
+
+def read_command(command: Command, line: str) -> None:
+    """A line of a list of commands: a command with what it does, or more of that."""
+    begun = re.match(r"  (\S+) +(.*)", line)
+    if begun:
+        command.commands[begun[1]] = begun[2]
+    elif line.strip():
+        last = list(command.commands)[-1]
+        command.commands[last] += f" {line.strip()}"
+    command.commands.pop("help", None)
 
 
 def all_commands(program: Path) -> list[Command]:
@@ -153,7 +170,7 @@ def commands_page(program: Path) -> str:
     ]
     for command in commands:
         parts.append(f"## {command.name}")
-        parts.append("\n\n".join(wrapped(part) for part in command.about.split("\n\n")))
+        parts += [paragraph(part) for part in command.about.split("\n\n")]
         parts.append(f"Usage: `{command.usage}`")
         arguments = command.groups.get("Arguments")
         if arguments:
@@ -161,15 +178,25 @@ def commands_page(program: Path) -> str:
         if command.commands:
             rows = [f"| [`{w}`](#{anchor(command.name)}-{w}) | {cell(a)} |" for w, a in command.commands.items()]
             parts.append("\n".join(["| command | what it does |", "|---|---|", *rows]))
+        if command.examples:
+            parts.append("\n".join(["```console", *command.examples, "```"]))
         if own_options(command):
             parts.append(f"Options: [options.md](options.md#{anchor(command.name)})")
     return "\n\n".join(parts) + "\n"
 
 
-def wrapped(paragraph: str, width: int = 118) -> str:
-    """A paragraph in lines of at most `width` characters."""
+def paragraph(text: str) -> str:
+    """A paragraph of a help as Markdown; lines that each name a command are a list."""
+    lines = text.splitlines()
+    if all(re.match(r"\w+: knotdock ", line) for line in lines):
+        return "\n".join(re.sub(r"^(\w+): (.*?)(?=, in a folder|$)", r"- \1: `\2`", line) for line in lines)
+    return wrapped(text)
+
+
+def wrapped(text: str, width: int = 118) -> str:
+    """Words in lines of at most `width` characters."""
     lines = [""]
-    for word in paragraph.replace("<", "\\<").split():
+    for word in text.replace("<", "\\<").split():
         if lines[-1] and len(lines[-1]) + 1 + len(word) > width:
             lines.append("")
         lines[-1] += (" " if lines[-1] else "") + word
@@ -243,16 +270,23 @@ def compare(what: str, real: set[str], page: set[str], maybe: frozenset[str] = f
     return lacking + [f"{what}: {name} is described, and does not exist" for name in sorted(page - real - maybe)]
 
 
-def run_example(program: Path, folder: Path) -> tuple[set[str], dict]:
+def run_example(program: Path, folder: Path) -> tuple[set[str], dict[str, object]]:
     """Columns of poses.csv and the record of a run of the example, of columns those of a run with distances too."""
     pairs = folder / "pairs.csv"
     pairs.write_text("receptor,ligand,upper\nA:189,B:5,8\n")
     predicted = folder / "predicted.csv"
     predicted.write_text("chain,residue,probability\nA,57,0.8\nA,100,0.1\n")
     partners = [EXAMPLES / f"1ppe_{side}_unbound.pdb" for side in ("receptor", "ligand")]
-    base = [program, "dock", *partners, "--rotations", "300", "--diagnostics", "-q"]
+    base: list[Path | str] = [program, "dock", *partners, "--rotations", "300", "--diagnostics", "-q"]
     natives = [f"--native-{side}={EXAMPLES / f'1ppe_{side}_bound.pdb'}" for side in ("receptor", "ligand")]
-    known = ["--restraints", pairs, "--interface-receptor", predicted, "--membrane=-60,-30", "--no-report"]
+    known: list[Path | str] = [
+        "--restraints",
+        pairs,
+        "--interface-receptor",
+        predicted,
+        "--membrane=-60,-30",
+        "--no-report",
+    ]
     subprocess.run([*base, *natives, "-o", folder / "example"], check=True)
     subprocess.run([*base, *known, "-o", folder / "known"], check=True)
     columns = set()

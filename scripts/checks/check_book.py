@@ -135,7 +135,7 @@ class Options:
         if not words or words[0].startswith("-"):
             self.require((), words)
             return
-        command = (words[0],)
+        command: tuple[str, ...] = (words[0],)
         rest = words[1:]
         if words[0] in ("morph", "se3") and rest and not rest[0].startswith("-"):
             command, rest = (words[0], rest[0]), rest[1:]
