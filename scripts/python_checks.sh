@@ -1,6 +1,6 @@
 #!/usr/bin/env bash
-# Checks of the Python package, by Python in a virtual environment of its own under target/: its tests, its types, its
-# README, and the recipes for clusters. Needs python3 (3.11 or later) with venv; the recipes need Slurm, for which Debian's
+# Checks of the Python package and of the book, by Python in a virtual environment of its own under target/: the
+# package's tests, types and README, the commands of the book, and the recipes for clusters. Needs python3 (3.11 or later) with venv; the recipes need Slurm, for which Debian's
 # slurm-wlm and munge are started as root, and are left out elsewhere.
 #
 #     scripts/python_checks.sh              the package as the tests' profile builds it, put together in a folder
@@ -34,6 +34,7 @@ if [ "${1:-}" = --wheel ]; then
     rm -rf "$wheels"
     (cd python && "$venv/bin/maturin" build --quiet --locked --release --out "$wheels")
     "$venv/bin/pip" install --quiet --disable-pip-version-check --no-deps "$wheels"/*.whl
+    program=$venv/bin/knotdock
 else
     # Built with the tests, for maturin would ask for other features and compile all again.
     cargo build --workspace --lib --tests --quiet --locked
@@ -45,14 +46,18 @@ else
     echo "$site" >"$packages/knotdock.pth"
     printf '#!/bin/sh\nexec "%s" -m knotdock "$@"\n' "$venv/bin/python" >"$venv/bin/knotdock"
     chmod +x "$venv/bin/knotdock"
+    program=$target/debug/knotdock
 fi
 # Away from the package's source, so that what is installed is what is tested.
-tests=$PWD/python/tests package=$PWD/python/knotdock
+root=$PWD tests=$PWD/python/tests package=$PWD/python/knotdock
 cd "$target/python"
 PATH=$venv/bin:$PATH
 pytest --quiet --rootdir "$tests" --config-file /dev/null -p no:cacheprovider "$tests"
 pytest --quiet --config-file /dev/null -p no:cacheprovider --doctest-modules --pyargs knotdock
 mypy --no-error-summary --ignore-missing-imports "$package"
+# The book: its commands are run, and its reference is what the program says.
+python "$root/scripts/checks/check_book.py" "$program"
+python "$root/scripts/book/write_reference.py" "$program" --check
 if [ -x "$(command -v slurmctld)" ] && [ "$(id -u)" = 0 ]; then
     python "$tests/../../scripts/checks/check_cluster.py" "$(mktemp -d)"
 else

@@ -52,7 +52,7 @@ class Run:
 
     @property
     def poses(self) -> Any:
-        """The table of poses as a pandas DataFrame; see docs/reference/formats.md for the columns."""
+        """The table of poses as a pandas DataFrame; see docs/reference/poses_csv.md for the columns."""
         return self.table("pandas")
 
     def _columns(self, names: str) -> np.ndarray:

@@ -97,9 +97,7 @@ Examples:
   knotdock dock antibody.pdb:H,L antigen.pdb:A -o run
   knotdock dock enzyme.pdb inhibitor.pdb --active-receptor A:57,189-195
   knotdock dock subunit.pdb --symmetry C3
-  knotdock dock block.stl peg.stl
-
-`knotdock dock --help` lists all options, in groups.";
+  knotdock dock block.stl peg.stl";
 
 /// A command whose `-h` shows of the options of a run only those that most people need.
 pub fn in_brief(command: Command) -> Command {
@@ -111,7 +109,10 @@ pub fn in_brief(command: Command) -> Command {
         argument.hide_short_help(!shown)
     });
     if is_dock {
-        command.after_help(EXAMPLES)
+        let more = "`knotdock dock --help` lists all options, in groups.";
+        command
+            .after_help(format!("{EXAMPLES}\n\n{more}"))
+            .after_long_help(EXAMPLES)
     } else {
         command
     }

@@ -1,6 +1,6 @@
 //! `run.json`: what was run, on what, by which program, and how well: enough to run it again.
 //!
-//! `docs/reference/formats.md` describes each entry. Everything outside the objects `timing` and `machine` is the same, byte for
+//! `docs/reference/run_json.md` describes each entry. Everything outside the objects `timing` and `machine` is the same, byte for
 //! byte, for the same input, options and CPU feature level.
 
 use std::collections::BTreeMap;

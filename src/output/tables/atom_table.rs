@@ -1,7 +1,7 @@
 //! The atoms of a structure file as a table: what was kept of it, and what was dropped and why.
 //!
 //! RFC 4180, but with LF as the line end; a row an atom of the model that was read, in the order of the file.
-//! `docs/reference/formats.md` describes the columns.
+//! `docs/reference/json_output.md` describes the columns.
 
 use std::path::Path;
 

@@ -1,6 +1,6 @@
 //! Collisions of two solids as a table: a row a pose, in the order of the poses.
 //!
-//! RFC 4180, but with LF as the line end. `docs/reference/formats.md` describes the columns. All of them but `microseconds` are
+//! RFC 4180, but with LF as the line end. `docs/reference/solids_files.md` describes the columns. All of them but `microseconds` are
 //! the same for any number of threads.
 
 use std::io;

@@ -1,6 +1,6 @@
 //! `refined.csv`: one row a refined pose, in the order in which ranks were requested.
 //!
-//! RFC 4180, but with LF as the line end. `docs/reference/formats.md` describes the columns. `rank` and the pose are named as in
+//! RFC 4180, but with LF as the line end. `docs/reference/files.md` describes the columns. `rank` and the pose are named as in
 //! `poses.csv`, so that the table is one of poses, too.
 
 use std::io;
