@@ -12,7 +12,8 @@ ROOT = pathlib.Path(__file__).parents[1]
 # What begins a message: the attribute of an error, and the calls that take one.
 BEGINS = re.compile(
     r"#\[error\(|Failure::(?:input|other|of_program)\(|\.remedy\(|\.warn\(|\.error\(|warnings\.push\(|"
-    r"(?:fn (?:remedy|advice|help)\w*\([^)]*\)[^{;]*\{)|(?:message|remedy|reason|instead)\s*[:=]\s*|Err\((?:format!\()?\"|"
+    r"(?:fn (?:remedy|advice|help)\w*\([^)]*\)[^{;]*\{)|(?:message|remedy|reason|instead)\s*[:=]\s*|"
+    r"Err\((?:format!\()?\"|"
     r"suggestion\(|wrong\(|refuse\w*\(|fault\(|unreadable\("
 )
 LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"', re.S)

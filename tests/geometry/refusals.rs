@@ -27,7 +27,10 @@ fn bad_input_is_refused_with_a_remedy() {
         ("obstacle large.csv small.csv --volume-grid o.vti", ".nrrd"),
         ("obstacle large.csv small.csv --picture o.png", ".svg"),
         ("obstacle large.csv small.csv -o there.csv", "--force"),
-        ("obstacle large.csv small.csv -o large.csv --force", "input files"),
+        (
+            "obstacle large.csv small.csv -o large.csv --force",
+            "input files",
+        ),
         ("obstacle large.csv small.csv --cells 100000", "512"),
         (
             "obstacle large.csv small.csv -o a.csv --surface nowhere/a.obj",
