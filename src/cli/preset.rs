@@ -46,11 +46,8 @@ fn all_options(preset: Preset) -> Result<String, Failure> {
     for option in definitions() {
         if subject != option.subject() {
             subject = option.subject();
-            let _ = write!(
-                file,
-                "{}[{subject}]\n",
-                if file.is_empty() { "" } else { "\n" }
-            );
+            let gap = if file.is_empty() { "" } else { "\n" };
+            let _ = writeln!(file, "{gap}[{subject}]");
         }
         let help = option.short_help();
         let _ = writeln!(file, "# {help}");

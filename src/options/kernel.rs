@@ -24,7 +24,7 @@ pub struct KernelOptions {
     pub lambda: f64,
     /// Depth r0 of the skin.
     ///
-    /// Of meshes it is the gap that is looked for between the parts. Its default is then twice the eps of both parts'
+    /// For meshes it is the gap that is looked for between the parts. Its default is then twice the eps of both parts'
     /// sampling, and at most twice the smaller feature size.
     #[arg(long, value_name = "ANGSTROM", value_parser = not_negative, default_value_t = 2.2)]
     pub offset: f64,
@@ -34,7 +34,7 @@ pub struct KernelOptions {
     pub alpha: f64,
     /// Finest detail that is ranked: the low-pass ends at one cycle per this length.
     ///
-    /// Of meshes the default is 2.045 times the offset.
+    /// For meshes the default is 2.045 times the offset.
     #[arg(long, value_name = "ANGSTROM", value_parser = above_zero, default_value_t = 4.5)]
     pub resolution: f64,
     /// Coarsest detail that the low-pass touches [default: 2 times the resolution].

@@ -12,7 +12,7 @@ use super::values::not_negative;
 pub struct RankingOptions {
     /// RMSD within which poses form a cluster, over the ligand's CA atoms.
     ///
-    /// Of meshes it is over the sample points, and the default is 2.273 times the offset.
+    /// For meshes it is over the sample points, and the default is 2.273 times the offset.
     #[arg(long, value_name = "ANGSTROM", value_parser = not_negative, default_value_t = 5.0)]
     pub cluster_radius: f64,
     /// Fit the best poses at atomic resolution: auto, on or off.
