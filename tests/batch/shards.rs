@@ -337,10 +337,10 @@ fn what_does_not_belong_together_is_refused() {
         fs::read(&poses).unwrap(),
     );
     fs::write(root.join("out/results.csv"), "name,value\n").unwrap();
-    refused("merge out --partial", "no table of a batch's results");
+    refused("merge out --partial", "not a table of results of a batch");
     refused(
         "batch in/pairs.csv -o out --keep table",
-        "no table of a batch's results",
+        "not a table of results of a batch",
     );
     let mut other = table.clone();
     other.extend(b"other,a.pdb,b.pdb,done,,,,,,,,,,,,,,\n");
@@ -349,7 +349,7 @@ fn what_does_not_belong_together_is_refused() {
     assert_eq!(fs::read(root.join("out/results.csv")).unwrap(), other);
     fs::write(root.join("out/results.csv"), table).unwrap();
     fs::write(&poses, "mine").unwrap();
-    refused("merge out --partial", "no file of a batch's poses");
+    refused("merge out --partial", "not a file of poses of a batch");
     fs::write(&poses, merged).unwrap();
     fs::create_dir_all(root.join("mine/shards/0001-of-0002")).unwrap();
     fs::write(root.join("mine/shards/0001-of-0002/poses.csv.gz"), "mine").unwrap();

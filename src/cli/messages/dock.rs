@@ -182,7 +182,7 @@ pub fn few_rotations_warning(outcome: &DockOutcome, has_deadline: bool) -> Optio
 /// Remark that an active site is assumed, and what follows.
 pub fn site_text(site: &AssumedSite) -> String {
     format!(
-        "Active site: {site}; poses that touch it rank higher, --peptidase-weight 0 leaves that out"
+        "Active site: {site}; poses that touch it rank higher, --config restraints.peptidase_weight=0 leaves that out"
     )
 }
 
@@ -246,14 +246,14 @@ pub fn regions_text(sides: &[&str], regions: &FlexibleRegions) -> Vec<String> {
                 )),
             }
             if !unresolved.segments.is_empty() {
-                options.push("--unresolved-weight 0");
+                options.push("--config terms.unresolved_weight=0");
             } else if let Some(last) = parts.last_mut() {
                 last.push_str(", for which the body leaves no room");
             }
             if termini.residues > 0 {
                 let residues = counted(termini.residues, "residue");
                 parts.push(format!("{residues} near termini or gaps"));
-                options.push("--termini-weight 0");
+                options.push("--config terms.termini_weight=0");
             }
             let leave = if options.len() > 1 { "leave" } else { "leaves" };
             let cost = match options.join(" and ") {
