@@ -20,7 +20,7 @@ pub enum SearchError {
     #[error(transparent)]
     Plan(#[from] PlanError),
     /// An option is out of its range.
-    #[error("{name} is {value}; it must be {bound}")]
+    #[error("--{name} is {value}; it must be {bound}")]
     Option {
         /// Name of the option.
         name: &'static str,
@@ -135,6 +135,9 @@ impl SearchError {
             }
             Self::Option { bound, .. } if bound.starts_with("left out") => {
                 "leave the option out".to_owned()
+            }
+            Self::Option { bound, .. } if bound.starts_with("residues") => {
+                "write residue 57 of chain A as A:57".to_owned()
             }
             Self::Plan(_) | Self::Option { .. } => {
                 "give the option a value in its range".to_owned()

@@ -152,7 +152,9 @@ fn shells_and_man_learn_every_command() {
     }
     printed(folder.path(), "man pages");
     let page = fs::read_to_string(folder.path().join("pages/knotdock-dock.1")).unwrap();
-    assert!(page.contains("active\\-receptor"), "{page}");
+    for part in ["active\\-receptor", "Write no report.html", ".SH EXAMPLES"] {
+        assert!(page.contains(part), "{part}: {page}");
+    }
     assert!(folder.path().join("pages/knotdock-morph-sum.1").exists());
     let version = printed(folder.path(), "--version");
     assert!(version.contains("features: "), "{version}");
@@ -182,7 +184,7 @@ fn a_run_says_little_unless_asked() {
         "{table}"
     );
     for part in [
-        "Error of the fast path",
+        "Error: scores of the search",
         "shape",
         "open brief/report.html",
         "knotdock export brief --rank 11-",

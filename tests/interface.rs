@@ -163,7 +163,7 @@ fn what_is_no_complex_is_refused() {
         ("complex.pdb E Z", "Z"),
         ("none.pdb", "no such file"),
         ("three.pdb I J E", "chains of 3 sides"),
-        ("complex.pdb -o complex.pdb", "one of those read"),
+        ("complex.pdb -o complex.pdb", "one of the input files"),
     ] {
         let words = format!("interface {words}");
         let error = refused(folder.path(), words.split(' '));

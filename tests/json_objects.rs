@@ -360,7 +360,7 @@ fn verbose_says_more_and_quiet_says_nothing() {
         String::from_utf8(run(folder.path(), &command).stdout).unwrap()
     };
     let [default, verbose, quiet] = ["-j 1", "-v -j 1", "-q -j 1"].map(said);
-    assert!(!default.contains("CPU s") && default.contains("Effect shape"));
+    assert!(!default.contains("CPU s") && default.contains("Scored by shape"));
     for part in [
         "CPU s",
         "search",

@@ -109,8 +109,13 @@ fn the_copy_that_is_taken_is_named() {
     assert_eq!(matched["unused_native_chains"], serde_json::json!(["B"]));
     assert!(matched["ligand"]["docked_share"].as_f64().unwrap() > 0.9);
     assert_eq!(matched["warnings"], serde_json::json!([]));
-    let text = succeed(folder.path(), EVALUATE.split_whitespace()).stdout;
-    let text = String::from_utf8(text).unwrap();
+    let said = |more: &str| {
+        let command = format!("{EVALUATE} {more}");
+        let output = succeed(folder.path(), command.split_whitespace());
+        String::from_utf8(output.stdout).unwrap()
+    };
+    let (brief, text) = (said(""), said("-v"));
+    assert!(brief.contains("not compared: chains B"), "{brief}");
     assert!(
         text.contains("receptor, as the native's E: 223 of 223"),
         "{text}"

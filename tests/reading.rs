@@ -191,7 +191,7 @@ fn an_assembly_is_written_and_read_again() {
 
     for (options, says) in [
         ("--write dimer.pdb", "already there"),
-        ("--write half.pdb --force", "one of those read"),
+        ("--write half.pdb --force", "one of the input files"),
         ("--write dimer.txt", "neither in .pdb nor in .cif"),
         ("--write all.cif --atoms all.cif", "name one file"),
         ("--force", "required"),
@@ -405,8 +405,8 @@ fn what_would_do_nothing_is_refused() {
     let run = "dock receptor.pdb ligand.pdb --rotations 20 --write-top 0 --native native.pdb -o run --quiet";
     succeed(folder.path(), run.split_whitespace());
     for (options, says) in [
-        ("--waters keep", "named by --receptor and --ligand"),
-        ("--min-plddt 50", "named by --receptor and --ligand"),
+        ("--waters keep", "need --receptor and --ligand"),
+        ("--min-plddt 50", "need --receptor and --ligand"),
         ("--ligand ligand.pdb --min-plddt 50", "predicted models"),
     ] {
         let output = cargo_bin_cmd!("knotdock")

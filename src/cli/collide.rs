@@ -35,7 +35,7 @@ use crate::cli::messages::failure::Failure;
 /// certify that the pose is free. Between the two it is undecided, and a finer --grid says more.
 #[derive(Args, Debug)]
 pub struct Collide {
-    /// The solid that stands; robot.yml:hand picks a link, FILE:H,L chains.
+    /// The fixed solid; robot.yml:hand picks a link, FILE:H,L chains.
     #[arg(value_name = "A")]
     first: String,
     /// The solid that moves, in the same unit of length.

@@ -55,13 +55,20 @@ impl ManPages {
             source,
         };
         std::fs::create_dir_all(directory).map_err(unwritable)?;
-        let mut command = command.disable_help_subcommand(true);
+        let mut command = shown_in_full(command.disable_help_subcommand(true));
         command.build();
         let mut pages = Vec::new();
         write_page(&command, directory, &mut pages)?;
         console.say(format!("{} pages in {}", pages.len(), directory.display()));
         console.result(&json!({ "pages": pages }))
     }
+}
+
+/// A command with all options in its short help: what is left out of that is left out of pages, too, where it has no
+/// longer help.
+fn shown_in_full(command: Command) -> Command {
+    let command = command.mut_args(|argument| argument.hide_short_help(false));
+    command.mut_subcommands(shown_in_full)
 }
 
 /// Writes the page of a command and those of its own commands.
@@ -75,7 +82,9 @@ fn write_page(command: &Command, directory: &Path, pages: &mut Vec<String>) -> R
     Man::new(command.clone())
         .render(&mut page)
         .map_err(Failure::other)?;
-    let written = std::fs::File::create(&path).and_then(|mut file| file.write_all(&page));
+    let page = String::from_utf8(page).map_err(Failure::other)?;
+    let page = page.replace(".SH EXTRA", ".SH EXAMPLES");
+    let written = std::fs::File::create(&path).and_then(|mut file| file.write_all(page.as_bytes()));
     written.map_err(|source| FileError::Unwritable {
         path: path.clone(),
         source,

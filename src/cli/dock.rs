@@ -30,16 +30,15 @@ use crate::cli::messages::failure::Failure;
 /// input and options give the same bytes for any number of threads, except with --budget.
 #[derive(Args, Clone, Debug)]
 pub struct Dock {
-    /// What stays: a molecule (.pdb, .cif, also .gz; FILE:H,L picks chains) or a mesh (.stl, .obj).
+    /// The fixed molecule (.pdb, .cif, also .gz; FILE:H,L picks chains) or mesh (.stl, .obj).
     ///
     /// Molecules: .pdb, .ent or .cif, each also .gz. FILE:H,L picks chains by the author's names, FILE:H:1-120,L
     /// residues too. Meshes: .stl, .obj, .ply or .off.
     #[arg(required_unless_present = "rerun", value_name = "RECEPTOR")]
     receptor: Option<String>,
-    /// What moves, of the same kind.
+    /// The molecule or mesh that is moved.
     #[arg(
         required_unless_present_any = ["rerun", "symmetry", "config"],
-        conflicts_with = "symmetry",
         value_name = "LIGAND"
     )]
     ligand: Option<String>,

@@ -28,7 +28,9 @@ use crate::cli::arguments::native::measure;
 use crate::cli::docking::Docking;
 use crate::cli::messages::brief::{cost_text, next_text};
 use crate::cli::messages::console::Console;
-use crate::cli::messages::dock::{error_warning, few_rotations_warning, outcome_text};
+use crate::cli::messages::dock::{
+    error_warning, few_rotations_warning, outcome_text, restraints_warning,
+};
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::warn_set_aside;
 use crate::cli::messages::timings::timings_text;
@@ -260,6 +262,9 @@ impl Docked {
             best_clusters(&outcome.poses, &self.quality)
         ));
         if let Some(warning) = error_warning(plan, outcome) {
+            console.warn(warning);
+        }
+        if let Some(warning) = restraints_warning(plan, &outcome.poses) {
             console.warn(warning);
         }
         if let Some(warning) = few_rotations_warning(outcome, docking.deadline.is_some()) {

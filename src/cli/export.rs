@@ -33,7 +33,7 @@ pub struct Export {
     #[arg(value_name = "DIR")]
     run: PathBuf,
     /// Ranks in poses.csv, such as 37,40-45.
-    #[arg(long, value_name = "RANKS")]
+    #[arg(long, alias = "ranks", value_name = "RANKS")]
     rank: Ranks,
     /// Of these ranks only the best of each cluster, where the table lists every pose.
     #[arg(long)]
@@ -45,7 +45,7 @@ pub struct Export {
     /// Directory to write to [default: DIR/top].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Replace complexes that are there and differ, be it that someone has edited them.
+    /// Replace complexes that are there and differ, even if someone has edited them.
     #[arg(long)]
     force: bool,
     #[command(flatten)]

@@ -24,7 +24,7 @@ use crate::cli::messages::library_errors::refused;
 /// Any complex file will do: of a crystal, of a predictor, of another docking program, or of knotdock.
 #[derive(Args, Debug)]
 pub struct InterfaceCommand {
-    /// Complex files (.pdb, .ent, .cif, each also .gz), and perhaps the chains of both sides, such as H,L A. Without
+    /// Complex files (.pdb, .ent, .cif, each also .gz), and optionally the chains of both sides, such as H,L A. Without
     /// them the sides are those that a complex of knotdock names, or the two chains of a file that has two.
     #[arg(value_name = "COMPLEX ... [CHAINS CHAINS]", required = true)]
     words: Vec<String>,

@@ -34,7 +34,7 @@ use crate::cli::messages::failure::Failure;
 /// free in a padded box: more than one means that B is caged somewhere, or cannot get somewhere.
 #[derive(Args, Debug)]
 pub struct Obstacle {
-    /// The solid that stands; robot.yml:hand picks a link, FILE:H,L chains.
+    /// The fixed solid; robot.yml:hand picks a link, FILE:H,L chains.
     #[arg(value_name = "A")]
     first: String,
     /// The solid that moves, in the same unit of length.

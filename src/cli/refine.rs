@@ -37,7 +37,7 @@ pub struct Refine {
     #[arg(value_name = "DIR")]
     run: PathBuf,
     /// Ranks in poses.csv, such as 1-50 or 3,7.
-    #[arg(long, value_name = "RANKS")]
+    #[arg(long, alias = "rank", value_name = "RANKS")]
     ranks: Ranks,
     /// Farthest that the ligand may move, as the RMSD of its atoms, in Å; a lower energy farther away is another pose.
     #[arg(long, value_name = "ANGSTROM", default_value_t = 3.0, value_parser = not_negative)]
@@ -51,7 +51,7 @@ pub struct Refine {
     /// Directory to write to [default: DIR/refined].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
-    /// Replace files that are there and differ, be it that someone has edited them.
+    /// Replace files that are there and differ, even if someone has edited them.
     #[arg(long)]
     force: bool,
     #[command(flatten)]

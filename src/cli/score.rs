@@ -35,7 +35,7 @@ pub struct Score {
     /// FILE:H:1-120,L residues too. Or a mesh: .stl, .obj, .ply or .off.
     #[arg(value_name = "RECEPTOR")]
     receptor: String,
-    /// The molecule that moves, likewise.
+    /// The molecule that is moved.
     #[arg(value_name = "LIGAND")]
     ligand: String,
     /// The pose, as poses.csv has it: a unit quaternion and a translation in Å. A ligand atom at x goes to R x + t.

@@ -33,10 +33,10 @@ use crate::cli::report::stage_listed;
 /// Writes tradeoff.csv, tradeoff.json, tradeoff.svg and report.html into a directory, and says which setting to take.
 #[derive(Args, Debug)]
 pub struct TradeoffCommand {
-    /// What stays, as for `knotdock dock`.
+    /// The fixed molecule or mesh, as for `knotdock dock`.
     #[arg(value_name = "RECEPTOR")]
     receptor: String,
-    /// What moves, likewise.
+    /// The molecule or mesh that is moved.
     #[arg(value_name = "LIGAND")]
     ligand: String,
     /// Directory to write to [default: tradeoff_RECEPTOR_LIGAND].

@@ -174,7 +174,10 @@ fn no_table(found: &Spanned<DeString<'_>>, definitions: &[Definition]) -> Wrong 
     subjects.dedup();
     let option = definitions.iter().find(|option| option.name() == name);
     let remedy = match option {
-        Some(option) => format!("put `{name}` into the table [{}]", option.subject()),
+        Some(option) => format!(
+            "put `{name}` into the table [{0}]: {0}.{name} = ...",
+            option.subject()
+        ),
         None => format!("the tables are [{}]", subjects.join("], [")),
     };
     Wrong {

@@ -82,9 +82,9 @@ pub struct RestraintOptions {
         allow_hyphen_values = true
     )]
     pub membrane: Option<MembraneChoice>,
-    /// What a pose earns in which the active site of a peptidase touches; 0 for none.
+    /// Score of a pose that touches the active site of a peptidase; 0 turns it off.
     ///
-    /// A pose that touches a part of the catalytic residues gets that share of it. Peptidases are detected from their
+    /// A pose that touches some of the catalytic residues gets that share of it. Peptidases are detected from their
     /// sequence. This counts if the contact effect is on, no residue is active, and the other molecule is neither
     /// peptidase nor antibody.
     #[arg(long, value_name = "NUMBER", value_parser = number(0.0..=1e6), default_value_t = peptidase::WEIGHT)]

@@ -41,7 +41,11 @@ impl RunReport<'_> {
                 consensus,
             ));
         }
-        sections.push(section("cost", "What accuracy cost", &run_cost::cost(self)));
+        sections.push(section(
+            "cost",
+            "Numerical error and cost",
+            &run_cost::cost(self),
+        ));
         sections.push(section(
             "options",
             "Options, and how to repeat the run",

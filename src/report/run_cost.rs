@@ -29,11 +29,11 @@ pub(super) fn cost(report: &RunReport) -> String {
         ],
         vec!["the same, largest".to_owned(), share(&error["worst"])],
         vec![
-            "what the low-pass took".to_owned(),
+            "score removed by the low-pass filter".to_owned(),
             share(&error["low_pass_share"]),
         ],
         vec![
-            "compression of the lifted axis".to_owned(),
+            "compression of the radius axis".to_owned(),
             share(&error["lifted_axis"]),
         ],
     ];
@@ -76,7 +76,7 @@ pub(super) fn cost(report: &RunReport) -> String {
         ]);
     }
     if lines.len() > 1 {
-        html += &table("Terms beside them", &lines);
+        html += &table("Other score terms", &lines);
     }
     let mut lines = vec![
         ["stage", "seconds", "CPU seconds"]
@@ -197,7 +197,7 @@ pub(super) fn options(report: &RunReport) -> String {
     let _ = write!(
         html,
         "<details><summary>All options</summary>\n{}</details>\n",
-        table("All options", &all)
+        table("Every option with its value", &all)
     );
     html
 }

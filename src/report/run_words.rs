@@ -116,9 +116,9 @@ fn found(report: &RunReport, shown: usize) -> String {
         (false, _) => "No known complex was given, so that nothing here says which pose is right: look at the best \
                        clusters, not at the first alone."
             .to_owned(),
-        (true, None) => "By the known complex no row is acceptable.".to_owned(),
+        (true, None) => "By the known complex no row is acceptable or better.".to_owned(),
         (true, Some(&first)) => format!(
-            "By the known complex the first acceptable row has rank {}, and {} of the first ten rows {} acceptable.",
+            "By the known complex the first acceptable row has rank {}, and {} of the first ten rows {} acceptable or better.",
             report.table.rows()[first].rank,
             good.iter().filter(|&&row| row < 10).count(),
             match good.iter().filter(|&&row| row < 10).count() {

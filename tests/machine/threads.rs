@@ -175,7 +175,7 @@ fn threads_that_cannot_be_started_are_a_failure() {
         };
         let message = refused["message"].as_str().unwrap();
         assert!(
-            message.contains("did not start 1000 threads"),
+            message.contains("could not start 1000 threads"),
             "{words}: {message}"
         );
         assert!(
@@ -227,7 +227,7 @@ fn an_account_without_processes_left_can_work_on_one_thread() {
     let sample: Vec<&str> = sample.split(' ').collect();
     let refused = error(&limited(&[&sample[..], &["2"]].concat()).unwrap(), 1);
     let message = refused["message"].as_str().unwrap();
-    assert!(message.contains("did not start 2 threads"), "{message}");
+    assert!(message.contains("could not start 2 threads"), "{message}");
     assert!(succeeds(&[&sample[..], &["1"]].concat()));
 
     let dock = "./program dock box.obj cube.obj --offset 0.45 --sample-grid 2^12 --rotations 16 -o run -j 1";

@@ -235,7 +235,7 @@ fn what_cannot_be_refined_is_refused() {
         "dock rank_0001.pdb ligand.pdb --rotations 20 --write-top 0 -o other --quiet".split(' '),
     );
     let reported = refused(folder.path(), "refine other --ranks 1 -o . --force");
-    assert!(reported.contains("one of those read"), "{reported}");
+    assert!(reported.contains("one of the input files"), "{reported}");
     fs::write(at("ligand.pdb"), crate::molecules::receptor()).unwrap();
     let reported = refused(folder.path(), "refine run --ranks 1");
     assert!(reported.contains("ligand.pdb"), "{reported}");

@@ -183,6 +183,10 @@ fn brief_match_text(report: &MatchReport) -> String {
             complex_text(taken)
         );
     }
+    if !report.unused_native_chains.is_empty() {
+        let chains = report.unused_native_chains.join(", ");
+        text += &format!("; not compared: chains {chains} (--native FILE:A,B picks others)");
+    }
     text
 }
 

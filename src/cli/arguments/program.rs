@@ -7,13 +7,13 @@ use crate::cli::messages::console::Console;
 /// Options of the whole program.
 #[derive(Args, Clone, Copy, Debug)]
 pub struct ProgramArguments {
-    /// Write one JSON object on standard output, every word on standard error.
+    /// Print one JSON object on standard output, and all messages on standard error.
     #[arg(long, global = true)]
     json: bool,
-    /// Write no words but errors.
+    /// Print errors only.
     #[arg(short, long, global = true, conflicts_with = "verbose")]
     quiet: bool,
-    /// Say more: the times of a run's stages and effects.
+    /// Print more detail.
     #[arg(short, long, global = true)]
     verbose: bool,
 }

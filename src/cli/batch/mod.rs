@@ -36,7 +36,7 @@ use crate::cli::messages::failure::Failure;
 /// of the table on each of several machines.
 #[derive(Args, Debug)]
 pub struct Batch {
-    /// Table of the pairs (CSV): columns `receptor` and `ligand` as for `knotdock dock`, perhaps `name`, and further
+    /// Table of the pairs (CSV): columns `receptor` and `ligand` as for `knotdock dock`, optionally `name`, and further
     /// columns named as options of `knotdock dock` that take a value (native, active_receptor, rotations ...). Files
     /// are looked for from the table's folder.
     #[arg(value_name = "PAIRS.CSV")]
@@ -112,10 +112,13 @@ impl Batch {
         std::fs::create_dir_all(&directory).map_err(unwritable)?;
         let count = pairs.len();
         console.say(format!(
-            "{} of {} {} to {}",
+            "Docking {} of {}{} into {}",
             counted(count, "pair"),
             self.pairs.display(),
-            if count == 1 { "goes" } else { "go" },
+            match self.shard {
+                Some(shard) => format!(" (shard {shard} of its {total})"),
+                None => String::new(),
+            },
             directory.display()
         ));
         let failures_ok = self.failures_ok;

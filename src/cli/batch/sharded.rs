@@ -125,7 +125,7 @@ impl Sharding {
             _ => "; --retry-failed docks those again that failed",
         };
         console.say(format!(
-            "{done} of {count} done and {failed} failed, in {}{again}",
+            "{done} of {count} done, {failed} failed, in {}{again}",
             place.display()
         ));
         console.result(&object)?;

@@ -24,21 +24,20 @@ use crate::cli::messages::set_aside::finish_before_reading;
 
 /// Measure the poses of a run, or complexes of any program, against a known complex.
 ///
-/// Gives interface and ligand RMSD (Å), the fraction of native contacts, DockQ and the CAPRI class of each.
+/// Gives interface and ligand RMSD (Å), the fraction of native contacts, DockQ and the CAPRI class of each. Without
+/// --native the known complex of the run is taken.
 #[derive(Args, Debug)]
 pub struct Evaluate {
-    /// Directory of a run, or a table of poses with columns rank, qw, qx, qy, qz, tx, ty and tz; or complex files
-    /// (.pdb, .ent, .cif, each also .gz), and perhaps the chains of their sides behind them, such as H,L A.
-    #[arg(
-        value_name = "DIR|POSES.CSV|COMPLEX ... [CHAINS CHAINS]",
-        required = true
-    )]
+    /// The directory of a run, a table of poses, or complex files and optionally the chains of both sides.
+    ///
+    /// A table has the columns rank, qw, qx, qy, qz, tx, ty and tz. Complex files are .pdb, .ent or .cif, each also
+    /// .gz. Chains come last, such as H,L A.
+    #[arg(value_name = "INPUT", required = true)]
     words: Vec<String>,
-    /// The receptor that was docked; FILE:H,L picks chains [default: from the run's run.json, and read as the run
-    /// read it].
+    /// The receptor that was docked; FILE:H,L picks chains [default: that of the run, read as the run read it].
     #[arg(long, value_name = "FILE")]
     receptor: Option<String>,
-    /// The ligand that was docked, likewise.
+    /// The ligand that was docked [default: that of the run].
     #[arg(long, value_name = "FILE")]
     ligand: Option<String>,
     #[command(flatten)]
@@ -46,14 +45,17 @@ pub struct Evaluate {
     #[command(flatten)]
     native: NativeArguments,
     /// Write the table with the columns irmsd, lrmsd, fnat, dockq and capri to this file.
-    #[arg(short, long, value_name = "FILE")]
+    #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
     output: Option<PathBuf>,
-    /// Replace the file of `--output` where it is already there, be it the table that is read.
-    #[arg(long, requires = "output")]
+    /// Replace the file of `--output` if it exists, even if it is the input table.
+    #[arg(long, requires = "output", help_heading = OUTPUT)]
     force: bool,
     #[command(flatten)]
     threads: Threads,
 }
+
+/// Heading of the options on what is written.
+const OUTPUT: &str = "Output";
 
 impl Evaluate {
     /// Evaluates; the exit code: 2 where some complexes could not be.

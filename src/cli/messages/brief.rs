@@ -92,6 +92,15 @@ pub fn expected_text(plan: &DockPlan, seconds: f64, chosen: Option<&Chosen>) -> 
     text
 }
 
+/// A share as people say it.
+fn share_text(share: f64) -> String {
+    match 100.0 * share {
+        percent if percent >= 0.1 => format!("{percent:.1}%"),
+        percent if percent >= 0.001 => format!("{percent:.3}%"),
+        percent => format!("{percent:.0e}%"),
+    }
+}
+
 /// A time as people say it.
 fn time_text(seconds: f64) -> String {
     match seconds {
@@ -121,9 +130,10 @@ pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String
     }
     if outcome.error.worst.is_finite() {
         lines.push(format!(
-            "Error of the fast path: at most {:.1e} of the best score, over {} scored exactly",
-            outcome.error.worst,
-            counted(outcome.error.poses, "pose")
+            "Error: scores of the search are within {} of the exact ones, of the best score ({} checked; tolerance {})",
+            share_text(outcome.error.worst),
+            counted(outcome.error.poses, "pose"),
+            share_text(plan.options.kernel.tolerance)
         ));
     }
     if let Some(stopped) = outcome.stopped {
@@ -134,7 +144,7 @@ pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String
     }
     match outcome.sharp.as_ref().map(|sharp| sharp.finding) {
         Some(SharpFinding::ExactFit) => {
-            lines.push("An exact fit stands out: ranked by fits at atomic resolution".to_owned());
+            lines.push("One fit at atomic resolution stands out and ranks first (--sharp off ranks without it)".to_owned());
         }
         Some(SharpFinding::Requested) => {
             lines.push("Ranked by fits at atomic resolution, though none stands out".to_owned());

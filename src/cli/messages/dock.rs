@@ -3,9 +3,10 @@
 use std::collections::BTreeMap;
 
 use crate::dock::flexible_regions::FlexibleRegions;
-use crate::dock::outcome::{DockOutcome, EffectCost};
+use crate::dock::outcome::{DockOutcome, EffectCost, RankedPose};
 use crate::dock::plan::DockPlan;
 use crate::output::tables::report::counted;
+use crate::output::tables::restraints::most_met;
 use crate::priors::active_residues::AssumedSite;
 use crate::priors::restrained::Restrained;
 use crate::rank::sharp::SharpFinding;
@@ -163,6 +164,22 @@ pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
              {tolerance:e}: what is reported is exact, but \
              other poses may have been missed; use a lower --tolerance or a finer --spacing than {:.4}",
             plan.spacing
+        )
+    })
+}
+
+/// Warning that no pose satisfies as many restraints as are needed.
+pub fn restraints_warning(plan: &DockPlan, poses: &[RankedPose]) -> Option<String> {
+    let known = &plan.restraints.distances;
+    let (most, count) = (most_met(plan, poses)?, known.list.len());
+    (most < known.needed).then(|| {
+        let needed = match known.needed {
+            needed if needed == count => format!("all {count}"),
+            needed => format!("{needed} of the {count}"),
+        };
+        format!(
+            "no pose satisfies {needed} restraints, at most {most}: they may contradict each other; restraints.csv has \
+             the distances, and --restraints-need allows for false ones"
         )
     })
 }

@@ -245,7 +245,7 @@ impl From<PairTableError> for Failure {
         Self::input(&error)
             .at(error.path())
             .on_line(error.line())
-            .remedy("give a CSV file with columns `receptor` and `ligand`, perhaps `name` and options of \
+            .remedy("give a CSV file with columns `receptor` and `ligand`, optionally `name` and options of \
                 `knotdock dock`, and a row for each pair")
     }
 }

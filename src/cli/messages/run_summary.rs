@@ -9,7 +9,7 @@ use serde_json::Value;
 pub fn summary_line(summary: &RunSummary, anew: bool, clock: Instant) -> String {
     let [_, clusters] = summary.counts;
     let mut words = format!(
-        "{} clusters, the best of pose score {}",
+        "{} clusters, best pose score {}",
         clusters.unwrap_or(0),
         rounded(&summary.best["pose_score"], 1).unwrap_or_default()
     );

@@ -16,9 +16,20 @@ fn distances(plan: &DockPlan, pose: &RankedPose) -> impl Iterator<Item = (f64, b
     plan.restraints.at(positions, &pose.pose)
 }
 
+/// How many restraints a pose satisfies.
+fn count(plan: &DockPlan, pose: &RankedPose) -> usize {
+    distances(plan, pose).filter(|(_, met)| *met).count()
+}
+
+/// The most restraints that any of the poses satisfies; `None` without restraints or poses.
+pub fn most_met(plan: &DockPlan, poses: &[RankedPose]) -> Option<usize> {
+    let counts = poses.iter().map(|pose| count(plan, pose));
+    counts.max().filter(|_| !plan.restraints.is_empty())
+}
+
 /// The column `restraints_met` of `poses.csv`; `None` without restraints.
 pub fn met(plan: &DockPlan, poses: &[RankedPose]) -> Option<Column> {
-    let count = |pose| distances(plan, pose).filter(|(_, met)| *met).count();
+    let count = |pose| count(plan, pose);
     (!plan.restraints.is_empty()).then(|| Column {
         name: "restraints_met".to_owned(),
         fields: poses.iter().map(|pose| count(pose).to_string()).collect(),

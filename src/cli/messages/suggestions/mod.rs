@@ -28,8 +28,8 @@ fn instead_of_option(word: &str) -> Option<String> {
     if let Some(option) = of_files {
         let (table, name) = (option.subject(), option.name());
         return Some(format!(
-            "weights and potentials are set by a file: `{name} = VALUE` under [{table}] in --config FILE, or \
-             --config {table}.{name}=VALUE here"
+            "weights and potentials are set by `--config {table}.{name}=VALUE`, or by a file with `{name} = VALUE` \
+             under [{table}]: `--config FILE`"
         ));
     }
     find(&OPTIONS, word).map(str::to_owned)
