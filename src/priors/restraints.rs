@@ -91,7 +91,7 @@ struct Named<'a> {
 impl Named<'_> {
     fn reason(&self, residues: &ResidueSelection, role: &str) -> String {
         let residues = String::from(residues.clone());
-        format!("residues {residues} of the {} are {role}", self.side)
+        format!("{role}: {residues} of the {}", self.side)
     }
 }
 
@@ -181,12 +181,12 @@ pub(crate) mod tests {
         assert_eq!(both.roles[1], [Free, Free, Free, Excluded]);
         assert_eq!(
             both.reason,
-            "residues A:2-3 of the receptor are blocked; residues A:4 of the ligand are blocked"
+            "blocked: A:2-3 of the receptor; blocked: A:4 of the ligand"
         );
         let unknown = of(None, Some("A:4,A:9")).unwrap_err();
         assert_eq!(
             unknown.to_string(),
-            "block-ligand is A:9; it must be residues that the ligand has, among A:1-4"
+            "--block-ligand is A:9; it must be residues that the ligand has, among A:1-4"
         );
     }
 

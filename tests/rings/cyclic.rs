@@ -258,7 +258,7 @@ fn what_no_ring_can_have_is_refused() {
         ("a.pdb --symmetry C3 --accuracy 0.1", "cannot be used with"),
         (
             "a.pdb --symmetry C3 --active-ligand B:5",
-            "active-ligand is B:5; it must be the receptor's",
+            "--active-ligand is B:5; it must be the receptor's",
         ),
         ("a.pdb --symmetry C3 --refine 5", "refine is 5"),
         (

@@ -138,7 +138,7 @@ pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String
     }
     if let Some(stopped) = outcome.stopped {
         lines.push(format!(
-            "Stopped for the time: {} of {} rotations were searched",
+            "Stopped at the time limit: searched {} of {} rotations",
             stopped.rotations, plan.rotations
         ));
     }

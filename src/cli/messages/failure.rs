@@ -25,6 +25,16 @@ pub struct Failure {
     remedy: Option<String>,
 }
 
+/// A message without the numbers of the system's errors: their words say the same.
+fn without_numbers(mut message: String) -> String {
+    while let Some(start) = message.find(" (os error ")
+        && let Some(length) = message[start..].find(')')
+    {
+        message.replace_range(start..=start + length, "");
+    }
+    message
+}
+
 impl Failure {
     /// A fault of the input or the command line (exit code 2).
     pub fn input(message: impl ToString) -> Self {
@@ -32,7 +42,7 @@ impl Failure {
             kind: Kind::Input,
             file: None,
             line: None,
-            message: message.to_string(),
+            message: without_numbers(message.to_string()),
             remedy: None,
         }
     }
