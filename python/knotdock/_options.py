@@ -14,75 +14,73 @@ class DockOptions(TypedDict, total=False):
     """Waters: drop or keep [default: drop]"""
 
     hetatm: str | float | Sequence[object]
-    """HETATM records but waters: no-additives drops known buffer and cryo additives, keep keeps all, drop
-    leaves only modified amino acids [default: no-additives]"""
+    """Other HETATM records: no-additives, keep or drop. no-additives drops known buffer and cryo additives.
+    keep keeps all. drop leaves only modified amino acids. [default: no-additives]"""
 
     drop_residue: str | Sequence[str]
-    """Leave out the residues of these names, such as an inhibitor in the binding site, whatever their record;
-    with commas between, or given again"""
+    """Leave out the residues of these names, such as an inhibitor in the binding site. ATOM and HETATM records
+    alike. Several names have commas between, or the option is given again."""
 
     hydrogens: str | float | Sequence[object]
-    """Hydrogens: drop (united-atom radii stand for them) or keep (all-atom radii for a molecule that has some)
-    [default: drop]"""
+    """Hydrogens: drop or keep. drop: united-atom radii stand for them. keep: a molecule that has some gets all-
+    atom radii. [default: drop]"""
 
     altloc: str | float | Sequence[object]
-    """Alternate location of a residue: occupancy, the best occupied, or the name of one, such as A, where it is
-    offered [default: occupancy]"""
+    """Alternate location of each residue: occupancy, or a name such as A. occupancy takes the best occupied
+    one. A name is taken where the residue has it. [default: occupancy]"""
 
     model: float | str
     """Model of a file that has several: 1 is the first, whatever number it carries. all reads all models as one
-    molecule, as of a biological assembly (.pdb1). Chain A of its second model is then called A-2 [default:
+    molecule, as of a biological assembly (.pdb1). Chain A of its second model is then called A-2. [default:
     1]"""
 
     assembly: str | float | Sequence[object]
-    """Build this biological assembly of a file that has it, such as 1; copies of chain A are called A-2, A-3
-    ..., which is how FILE:A,A-2 picks them"""
+    """Build this biological assembly of a file that has it, such as 1. Copies of chain A are called A-2, A-3
+    and so on, and FILE:A,A-2 picks them."""
 
     min_plddt: str | float | Sequence[object]
-    """Of a predicted model leave out residues with a pLDDT below this, 0 to 100: 50 leaves out what is likely
-    disordered. Where no file is known as a prediction, B values that can be pLDDT are taken for it"""
+    """Leave out residues of a predicted model with a pLDDT below this, 0 to 100. 50 leaves out what is likely
+    disordered. If neither file is known as a prediction, B values that can be pLDDT are taken for it."""
 
     sample_grid: str | float | Sequence[object]
-    """Of meshes: nodes of the grid that each part is sampled on, as 2^18 or 262144 [default: 2^18]"""
+    """Nodes of the grid on which each mesh is sampled, as 2^18 or 262144 [default: 2^18]"""
 
     sample_weights: Literal["fitted", "unit"]
-    """Of meshes: weights of the balls, those whose summed bumps come closest to one inside and to zero outside,
-    or one [default: fitted]"""
+    """Weights of the balls of meshes: fitted or unit [default: fitted]. fitted: the summed bumps come closest
+    to one inside and to zero outside. unit: one each."""
 
     sampler: str | float | Sequence[object]
-    """Of meshes: how a part becomes balls. lattice: balls of one radius; bi: those of Behandish and Ilieş'
-    Algorithm 1, which count by volume [default: lattice]"""
+    """How a mesh becomes balls: lattice or bi [default: lattice]. lattice: balls of one radius. bi: the balls
+    of Behandish and Ilieş' Algorithm 1, which count by volume."""
 
     effects: str | float | Sequence[object]
-    """Effects to score: auto takes those that the inputs call for; else any of shape, electrostatics, contact
-    and restraint, with commas between them (shape is always on) [default: auto]"""
+    """Effects that score: auto, or names with commas between. auto takes the effects that the inputs call for.
+    The names are shape (always on), electrostatics, contact and restraint. [default: auto]"""
 
     lambda_: float | str
-    """Penalty of overlap against the reward of contact (dimensionless) [default: 9]"""
+    """Penalty of overlap against the reward of contact [default: 9]"""
 
     offset: float | str
-    """Depth r0 of the skin, in Å; of meshes the gap that is looked for between the parts, by default twice the
-    eps of both parts' sampling, at most twice the smaller feature size [default: 2.2]"""
+    """Depth r0 of the skin. For meshes it is the gap that is looked for between the parts. Its default is then
+    twice the eps of both parts' sampling, and at most twice the smaller feature size. [default: 2.2]"""
 
     alpha: float | str
-    """Exponent of the bump kernel (dimensionless): large values harden the balls, `inf` makes them sharp
-    [default: 2]"""
+    """Exponent of the bump kernel: large values harden the balls, `inf` makes them sharp [default: 2]"""
 
     resolution: float | str
-    """Finest detail that is ranked, in Å, of meshes in their unit as all lengths: the low-pass ends at 1/A
-    cycles per Å; of meshes by default 2.045 times the offset [default: 4.5]"""
+    """Finest detail that is ranked: the low-pass ends at one cycle per this length. For meshes the default is
+    2.045 times the offset. [default: 4.5]"""
 
     pass_length: str | float | Sequence[object]
-    """Coarsest detail that the low-pass touches, in Å: it takes nothing below 1/A cycles per Å; at least a
-    hundredth above the resolution [default: 2 times the resolution]"""
+    """Coarsest detail that the low-pass touches [default: 2 times the resolution]. It leaves whole what is
+    below one cycle per this length, which is at least a hundredth above the resolution."""
 
     spacing: str | float | Sequence[object]
-    """Spacing of the translation grid, in Å [default: half the resolution, or finer where the tolerance needs
-    it]"""
+    """Spacing of the translation grid [default: half the resolution, or finer where the tolerance needs it]"""
 
     tolerance: float | str
-    """Error of the fast path that is allowed, as a share of the best score. A smaller one lengthens the window
-    of the kernel too, so that exact scores of runs with different tolerances differ [default: 0.01]"""
+    """Error of the fast path that is allowed, as a share of the best score. A smaller one also lengthens the
+    window of the kernel. Exact scores of runs with different tolerances therefore differ. [default: 0.01]"""
 
     core_weight: float | str
     """Weight in shape of atoms that no water reaches, against 1 for the others [default: 1]"""
@@ -132,90 +130,93 @@ class DockOptions(TypedDict, total=False):
     """Cost of each Å by which a pose lies in the membrane: score per Å; 0 leaves the term out [default: 50]"""
 
     contact_potential: str | os.PathLike[str]
-    """Contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py writes
-    it"""
+    """Contact potential in place of the program's own. A table as scripts/potentials/contact_potential.py
+    writes it."""
 
     fine_contact_potential: str | os.PathLike[str]
-    """Fine contact potential to use in place of the program's own, as scripts/potentials/contact_potential.py
-    --fine writes it"""
+    """Fine contact potential in place of the program's own. A table as scripts/potentials/contact_potential.py
+    --fine writes it."""
 
     atom_pair_potential: str | os.PathLike[str]
-    """Atom pair potential to use in place of the program's own, as scripts/potentials/atom_pair_potential.py
-    writes it"""
+    """Atom pair potential in place of the program's own. A table as scripts/potentials/atom_pair_potential.py
+    writes it."""
 
     ph: float | str
     """pH at which charges are assigned [default: 7]"""
 
     antibody: Literal["cdrs", "whole"]
-    """What may touch of an antibody, which is detected from its sequence: cdrs, its complementarity-determining
-    regions and what lies within 5 Å of them, or whole, all of it [default: cdrs]"""
+    """What may touch of an antibody: cdrs or whole. Antibodies are detected from their sequence. cdrs: the
+    complementarity-determining regions and what lies within 5 Å of them. whole: all of it. [default: cdrs]"""
 
     block_receptor: str | float | Sequence[object]
-    """Residues of the receptor to keep free of contact: H:1-50,52,52A,L for a range with all that is inserted
-    in it, a residue, an inserted one and a chain. A chain without a name is _; after a residue its chain's name
-    may be left out, unless another chain is called so"""
+    """Residues of the receptor that are not in contact, such as H:1-50,52A,L. H:1-50 is a range with all that
+    is inserted in it, 52A an inserted residue, L a chain. A chain without a name is _. After a residue its
+    chain's name may be left out, unless another chain has the residue's name."""
 
     block_ligand: str | float | Sequence[object]
-    """Residues of the ligand to keep free of contact, likewise"""
+    """Residues of the ligand that are not in contact. Written as those of --block-receptor."""
 
     active_receptor: str | float | Sequence[object]
-    """Active residues of the receptor, thought to be in contact: poses that touch them rank higher, by
-    --active-weight. In the search each contact of theirs earns a 250th of that, divided by their number"""
+    """Residues of the receptor that are thought to be in contact, such as A:57,189-195. Poses that touch them
+    rank higher, by active_weight of [terms]. In the search each contact of theirs earns a 250th of that,
+    divided by their number."""
 
     active_ligand: str | float | Sequence[object]
-    """Active residues of the ligand, likewise"""
+    """Residues of the ligand that are thought to be in contact. Written as those of --active-receptor."""
 
     restraints: str | os.PathLike[str]
-    """Distances that are known between receptor and ligand: a table (columns receptor, ligand, lower, target,
-    upper, group; residues as A:57, atoms as A:57.CA) or a .tbl of HADDOCK and CNS. Poses that cannot satisfy
-    them are not searched"""
+    """Distances that are known between receptor and ligand: a table, or a .tbl of HADDOCK and CNS. The columns
+    of the table are receptor, ligand, lower, target, upper and group. Residues are written as A:57, atoms as
+    A:57.CA. Poses that cannot satisfy the distances are not searched."""
 
     restraints_need: str | float | Sequence[object]
-    """How many of the restraints a pose has to satisfy: a number, or a share such as 60%. Fewer than all, where
-    some may be false [default: 100%]"""
+    """How many of the restraints a pose has to satisfy: a number, or a share such as 60%. Ask for fewer than
+    all if some may be false. [default: 100%]"""
 
     crosslink: str | float | Sequence[object]
-    """The reagent of cross-links: rows of --restraints without an upper bound get that of its CA atoms. DSS or
-    BS3: 30 Å"""
+    """Reagent of cross-links: DSS or BS3. Rows of --restraints without an upper bound get that of the reagent,
+    between CA atoms. DSS and BS3: 30 Å."""
 
     interface_receptor: str | os.PathLike[str]
-    """How likely each residue of the receptor is in the interface, as a predictor says: a table (columns chain,
-    residue, probability), or bfactor for the B values of the receptor's file. Poses that touch the likely ones
-    rank higher, by --interface-weight"""
+    """How likely each residue of the receptor is in the interface: a table, or bfactor. The columns of the
+    table are chain, residue and probability, as a predictor gives them. bfactor reads the B values of the
+    receptor's file. Poses that touch the likely residues rank higher, by interface_weight of [terms]."""
 
     interface_ligand: str | os.PathLike[str]
     """The same of the ligand"""
 
     membrane: str | float | Sequence[object]
-    """A membrane that no atom of the other molecule enters: receptor or ligand, whose file marks its planes as
-    those of OPM and PPM do, or the lowest and highest z in Å of the receptor's file (--membrane=-15,15). Poses
-    in it are not searched, but for what lies between the samples, which costs --membrane-weight"""
+    """A membrane that no atom of the other molecule enters: receptor, ligand or two heights z. receptor or
+    ligand: that file marks the planes as OPM and PPM do. LOW,HIGH: the lowest and highest z in Å of the
+    receptor's file (--membrane=-15,15). Poses in it are not searched. What lies between the samples costs
+    membrane_weight of [terms]."""
 
     peptidase_weight: float | str
-    """What a pose earns in which the active site of a peptidase touches, else the share of its catalytic
-    residues that does: score. Peptidases are detected from their sequence, and this counts where the contact
-    effect is on, no residue is active and the other is neither peptidase nor antibody; 0 for none [default:
-    500]"""
+    """Score of a pose that touches the active site of a peptidase; 0 turns it off. A pose that touches some of
+    the catalytic residues gets that share of it. Peptidases are detected from their sequence. This counts if
+    the contact effect is on, no residue is active, and the other molecule is neither peptidase nor antibody.
+    [default: 500]"""
 
     rotations: float | str
-    """Rotations of the ligand, near uniform over all: their number, or their angle. An angle such as 15deg
-    stands for the field's count 3600 (15/D)^3, so that 6deg gives 56,250. With `dock --symmetry` axes, by
-    default 900 over half a sphere or 90 across a ring's own [default: 3600]"""
+    """Rotations of the ligand, spread evenly over all: their number, or the angle between them, such as 15deg.
+    An angle stands for a number, 3600 (15/D)^3, so that 6deg gives 56,250. With --symmetry the option counts
+    axes, by default 900 over half a sphere or 90 across a ring's own. [default: 3600]"""
 
     fine_rotations: str | float | Sequence[object]
-    """Search again, among this many rotations (or this angle, likewise), about the best: their peaks take the
-    place of the best rotations' own"""
+    """Search again, among this many rotations, about the best: a number or an angle. Their peaks take the place
+    of the best rotations' own."""
 
     fine_share: float | str
     """Share of the finer rotations that are searched [default: 0.05]"""
 
     precision: Literal["single", "double"]
-    """Floating-point type of the search: single or double, which allows tolerances from 1e-4 down to 1e-6. What
-    is reported is in double precision either way [default: single]"""
+    """Floating-point type of the search: single or double. single allows tolerances down to 1e-4, double down
+    to 1e-6. What is reported is in double precision either way. [default: single]"""
 
     engine: Literal["cpu", "gpu"]
-    """What correlates: cpu, or gpu, a graphics processor driven through Vulkan, Metal or Direct3D 12, in single
-    precision; of several the environment variable WGPU_ADAPTER_NAME names one [default: cpu]"""
+    """What computes the correlations: cpu, or gpu, a graphics processor. A graphics processor works through
+    Vulkan, Metal or Direct3D 12, in single precision. If there are several, the environment variable
+    WGPU_ADAPTER_NAME names one. [default: cpu]"""
 
     per_rotation: float | str
     """Peaks kept of each rotation [default: 3]"""
@@ -224,26 +225,27 @@ class DockOptions(TypedDict, total=False):
     """Poses kept of all rotations [default: 2000]"""
 
     refine: str | float | Sequence[object]
-    """Best poses to refine off the grid [default: 600 with shape alone, none beside other effects, where
-    tighter fits make no better a ranking]"""
+    """Best poses to refine off the grid [default: 600 with shape alone, else none]. Beside other effects
+    tighter fits make no better a ranking."""
 
     symmetry: str | float | Sequence[object]
-    """Dock copies of RECEPTOR, given without LIGAND, into a ring: C2, C3 and so on for 2, 3 and more copies
-    about an axis. Where RECEPTOR is itself a ring of 2, 3 or more copies, D2, D3 and so on dock two such rings
-    face to face. The option --rotations then counts axes, and each pose is where the second copy or ring goes.
-    Residues that --block-receptor and --active-receptor name are those of every copy, or of both rings"""
+    """Dock copies of RECEPTOR into a ring: C2, C3 ..., or two rings: D2, D3 ... LIGAND is left out. C2, C3 and
+    so on put 2, 3 and more copies about an axis. If RECEPTOR is itself a ring of 2, 3 or more copies, D2, D3
+    and so on dock two such rings face to face. The option --rotations then counts axes, and each pose is where
+    the second copy or ring goes. Residues that --block-receptor and --active-receptor name are those of every
+    copy, or of both rings."""
 
     cluster_radius: float | str
-    """RMSD within which poses form a cluster, in Å, over the ligand's CA atoms or a mesh's sample points; of
-    meshes by default 2.273 times the offset [default: 5]"""
+    """RMSD within which poses form a cluster, over the ligand's CA atoms. For meshes it is over the sample
+    points, and the default is 2.273 times the offset. [default: 5]"""
 
     sharp: Literal["auto", "on", "off"]
-    """Fit the best poses at atomic resolution: auto ranks by these fits where one stands out as an exact fit
-    does, on always, off never looks for them [default: auto]"""
+    """Fit the best poses at atomic resolution: auto, on or off. auto ranks by these fits if one stands out as
+    an exact fit does. on always ranks by them. off makes none. [default: auto]"""
 
     no_cluster: bool
-    """List every pose, but for those within a step of the search of a better refined one; without this, one row
-    a cluster, its best pose"""
+    """List every pose, not the best one of each cluster. Refined poses within a step of the search of a better
+    one are left out."""
 
     write_top: float | str
     """Complexes to write to top/ [default: 10]"""
@@ -258,15 +260,17 @@ class DockOptions(TypedDict, total=False):
     """Threads [default: all hardware threads]"""
 
     memory: str | float | Sequence[object]
-    """Memory that the whole run may take, program, reading and sampling included, such as 800M (10^6) or 4GiB
-    (2^30 bytes) [default: 80% of what is free]"""
+    """Memory that the whole run may take, such as 800M or 4GiB [default: 80% of what is free]. Program, reading
+    and sampling included. M is 10^6 bytes, GiB 2^30."""
 
 
 class DockArguments(DockOptions, total=False):
     """Options of the command line that are not of every run."""
 
-    config: str | os.PathLike[str]
-    """Options from a file in TOML."""
+    preset: Literal["fast", "default", "thorough", "shape"]
+    """Options by a name."""
+    config: str | os.PathLike[str] | Sequence[str | os.PathLike[str]]
+    """Options from files in TOML, or from lines such as `terms.contact_weight=1`; later ones win."""
     native: Any
     """The known complex, as inputs of `dock`."""
     native_receptor: Any
