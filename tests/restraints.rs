@@ -145,6 +145,29 @@ fn some_restraints_may_be_false() {
 }
 
 /// A cross-link without a bound has that of its reagent, and the same restraint as a statement gives the same table.
+/// Bounds of one residue to three far ones contradict each other: poses come near, none meets all, and the run warns.
+#[test]
+fn restraints_that_no_pose_satisfies_are_warned_of() {
+    let folder = tempfile::tempdir().unwrap();
+    let contradictory = "receptor,ligand,upper\nA:16,B:5,3\nA:57,B:5,3\nA:245,B:5,3\n";
+    fs::write(folder.path().join("all.csv"), contradictory).unwrap();
+    fs::write(folder.path().join("one.csv"), PAIR).unwrap();
+    let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
+    let said = |file: &str, options: &str| {
+        let mut words = vec!["dock", &receptor, &ligand, "--restraints", file];
+        let always = "--rotations 96 --poses 60 --sharp off -o run --force";
+        words.extend(always.split(' ').chain(options.split_whitespace()));
+        let output = succeed(folder.path(), words);
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let warning = "no pose satisfies all 3 restraints, at most 1";
+    let contradicted = said("all.csv", "");
+    assert!(contradicted.contains(warning), "{contradicted}");
+    for met in [said("all.csv", "--restraints-need 1"), said("one.csv", "")] {
+        assert!(!met.contains("no pose satisfies"), "{met}");
+    }
+}
+
 #[test]
 fn presets_and_statements_mean_the_same() {
     let folder = tempfile::tempdir().unwrap();

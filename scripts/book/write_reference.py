@@ -313,6 +313,19 @@ def check_files(program: Path) -> list[str]:
     return faults
 
 
+def check_weights(program: Path) -> list[str]:
+    """What the table of weights lacks, and where it has another default."""
+    words = [program, "preset", "default", "--all"]
+    text = subprocess.run(words, capture_output=True, text=True, check=True).stdout
+    real = {name: float(value) for name, value in re.findall(r"^(\w+_weight) = (\S+)$", text, re.MULTILINE)}
+    page = (REFERENCE / "config_files.md").read_text()
+    listed = {
+        name: float(value) for name, value in re.findall(r"^\| `(\w+_weight)` \| ([\d.]+) \|", page, re.MULTILINE)
+    }
+    different = [name for name in sorted(real.keys() | listed.keys()) if real.get(name) != listed.get(name)]
+    return [f"config_files.md: {name} is {real.get(name)}, not {listed.get(name)}" for name in different]
+
+
 def main() -> int:
     parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
     parser.add_argument("program", type=Path)
@@ -328,7 +341,7 @@ def main() -> int:
             change = difflib.unified_diff(page.read_text().splitlines(), text.splitlines(), name, "help", "", "", 0, "")
             faults.append("\n".join(change) + f"\n{name} differs from the help: run write_reference.py")
     if arguments.check:
-        faults += check_files(program)
+        faults += check_files(program) + check_weights(program)
     for fault in faults:
         print(fault)
     return 1 if faults else 0

@@ -196,3 +196,28 @@ pub fn next_text(
         steps.collect::<String>()
     )
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn shares_and_times_are_short() {
+        for (share, text) in [
+            (0.012, "1.2%"),
+            (3e-3, "0.3%"),
+            (2e-4, "0.020%"),
+            (1e-6, "1e-4%"),
+        ] {
+            assert_eq!(share_text(share), text);
+        }
+        for (seconds, text) in [
+            (3.21, "3.2 s"),
+            (75.0, "75 s"),
+            (600.0, "10 min"),
+            (9000.0, "2.5 h"),
+        ] {
+            assert_eq!(time_text(seconds), text);
+        }
+    }
+}

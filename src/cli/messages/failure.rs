@@ -156,3 +156,16 @@ impl Failure {
         }})
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_of_the_system_s_errors_are_left_out() {
+        let failure =
+            Failure::input("cannot read a: Is a directory (os error 21), nor b (os error 2)");
+        assert_eq!(failure.message(), "cannot read a: Is a directory, nor b");
+        assert_eq!(Failure::input("(os error").message(), "(os error");
+    }
+}
