@@ -355,7 +355,7 @@ fn what_does_not_belong_together_is_refused() {
     fs::write(root.join("mine/shards/0001-of-0002/poses.csv.gz"), "mine").unwrap();
     refused(
         &shard("--shard 1/2").replace("-o out", "-o mine"),
-        "of no shard",
+        "belongs to no shard",
     );
     // A shard that is not done.
     assert!(batch(root, &shard("--shard 2/2")).status.success());

@@ -250,7 +250,7 @@ fn what_no_ring_can_have_is_refused() {
     let bunny = concat!(env!("CARGO_MANIFEST_DIR"), "/structures/examples/bunny.obj");
     fs::copy(bunny, folder.path().join("a.obj")).unwrap();
     for (options, said) in [
-        ("a.pdb a.pdb --symmetry C2", "cannot be used with"),
+        ("a.pdb a.pdb --symmetry C2", "LIGAND is given too"),
         ("a.pdb --symmetry T", "no symmetry"),
         ("a.pdb --symmetry C1", "no symmetry"),
         ("a.pdb --symmetry C3 --rotations 12deg", "axes"),
