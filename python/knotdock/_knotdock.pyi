@@ -12,6 +12,7 @@ class _Option(TypedDict):
     default: str | None
     subject: str
     help: str
+    of_files: bool
 
 def call(words: Sequence[str | os.PathLike[str]], listener: Any) -> tuple[str | None, int]: ...
 def main(arguments: list[str]) -> int: ...

@@ -36,7 +36,7 @@ pub struct RestraintOptions {
     pub block_ligand: Option<ResidueSelection>,
     /// Residues of the receptor that are thought to be in contact, such as A:57,189-195.
     ///
-    /// Poses that touch them rank higher, by active_weight of [terms]. In the search each contact of theirs earns a
+    /// Poses that touch them rank higher, by terms.active_weight. In the search each contact of theirs earns a
     /// 250th of that, divided by their number.
     #[arg(long, value_name = "RESIDUES")]
     pub active_receptor: Option<ResidueSelection>,
@@ -64,8 +64,8 @@ pub struct RestraintOptions {
     /// How likely each residue of the receptor is in the interface: a table, or bfactor.
     ///
     /// The columns of the table are chain, residue and probability, as a predictor gives them. bfactor reads the B
-    /// values of the receptor's file. Poses that touch the likely residues rank higher, by interface_weight of
-    /// [terms].
+    /// values of the receptor's file. Poses that touch the likely residues rank higher, by
+    /// terms.interface_weight.
     #[arg(long, value_name = "FILE|bfactor", value_parser = PredictionSource::read, value_hint = ValueHint::FilePath)]
     pub interface_receptor: Option<PredictionSource>,
     /// The same of the ligand.
@@ -75,7 +75,7 @@ pub struct RestraintOptions {
     ///
     /// receptor or ligand: that file marks the planes as OPM and PPM do. LOW,HIGH: the lowest and highest z in Å of the
     /// receptor's file (--membrane=-15,15). Poses in it are not searched. What lies between the samples costs
-    /// membrane_weight of [terms].
+    /// terms.membrane_weight.
     #[arg(
         long,
         value_name = "receptor|ligand|LOW,HIGH",
