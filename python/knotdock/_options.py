@@ -158,8 +158,8 @@ class DockOptions(TypedDict, total=False):
 
     active_receptor: str | float | Sequence[object]
     """Residues of the receptor that are thought to be in contact, such as A:57,189-195. Poses that touch them
-    rank higher, by active_weight of [terms]. In the search each contact of theirs earns a 250th of that,
-    divided by their number."""
+    rank higher, by terms.active_weight. In the search each contact of theirs earns a 250th of that, divided by
+    their number."""
 
     active_ligand: str | float | Sequence[object]
     """Residues of the ligand that are thought to be in contact. Written as those of --active-receptor."""
@@ -180,7 +180,7 @@ class DockOptions(TypedDict, total=False):
     interface_receptor: str | os.PathLike[str]
     """How likely each residue of the receptor is in the interface: a table, or bfactor. The columns of the
     table are chain, residue and probability, as a predictor gives them. bfactor reads the B values of the
-    receptor's file. Poses that touch the likely residues rank higher, by interface_weight of [terms]."""
+    receptor's file. Poses that touch the likely residues rank higher, by terms.interface_weight."""
 
     interface_ligand: str | os.PathLike[str]
     """The same of the ligand"""
@@ -189,7 +189,7 @@ class DockOptions(TypedDict, total=False):
     """A membrane that no atom of the other molecule enters: receptor, ligand or two heights z. receptor or
     ligand: that file marks the planes as OPM and PPM do. LOW,HIGH: the lowest and highest z in Å of the
     receptor's file (--membrane=-15,15). Poses in it are not searched. What lies between the samples costs
-    membrane_weight of [terms]."""
+    terms.membrane_weight."""
 
     peptidase_weight: float | str
     """Score of a pose that touches the active site of a peptidase; 0 turns it off. A pose that touches some of
