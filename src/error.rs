@@ -137,7 +137,7 @@ impl SearchError {
                 "leave the option out".to_owned()
             }
             Self::Option { bound, .. } if bound.starts_with("residues") => {
-                "write residue 57 of chain A as A:57".to_owned()
+                "name residues that the file has, by chain and number".to_owned()
             }
             Self::Plan(_) | Self::Option { .. } => {
                 "give the option a value in its range".to_owned()

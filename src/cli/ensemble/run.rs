@@ -22,6 +22,7 @@ use crate::cli::ensemble::laid::{Laid, LaidSides};
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::inputs::conformations::Conformation;
 use crate::cli::inputs::request::Request;
+use crate::cli::messages::brief::time_text;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::run_summary::summary_line;
@@ -135,8 +136,8 @@ impl Ensemble {
              each, and at most {:.0} MB",
             counted(count, "run"),
             counted(receptors, "conformation"),
-            duration(seconds),
-            duration(each),
+            time_text(seconds),
+            time_text(each),
             bytes as f64 / 1e6,
         ));
         Ok(seconds)
@@ -227,13 +228,4 @@ fn largest(side: &[Laid]) -> usize {
     let by_radius =
         |&a: &usize, &b: &usize| side[a].radius.total_cmp(&side[b].radius).then(b.cmp(&a));
     places.max_by(by_radius).unwrap_or(0)
-}
-
-/// A time as people say it.
-fn duration(seconds: f64) -> String {
-    match seconds {
-        s if s < 120.0 => format!("{s:.0} s"),
-        s if s < 7200.0 => format!("{:.0} min", s / 60.0),
-        s => format!("{:.1} h", s / 3600.0),
-    }
 }

@@ -102,7 +102,7 @@ fn share_text(share: f64) -> String {
 }
 
 /// A time as people say it.
-fn time_text(seconds: f64) -> String {
+pub fn time_text(seconds: f64) -> String {
     match seconds {
         s if s < 10.0 => format!("{s:.1} s"),
         s if s < 120.0 => format!("{s:.0} s"),
@@ -111,7 +111,8 @@ fn time_text(seconds: f64) -> String {
     }
 }
 
-/// What a finished run of so many seconds cost, how far the fast path was from the exact score, and what else decided the ranking.
+/// What a finished run of so many seconds cost, how far the fast path was from the exact score, and what else decided
+/// the ranking.
 pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String {
     let costs = outcome.effects.iter().filter(|cost| cost.on);
     let costs: Vec<String> = costs
