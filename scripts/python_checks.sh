@@ -16,7 +16,8 @@ wanted=$(cat scripts/checks/requirements_python.txt)
 if [ "$wanted" != "$(cat "$venv/installed.txt" 2>/dev/null)" ]; then
     rm -rf "$venv"
     python3 -m venv "$venv"
-    "$venv/bin/pip" install --quiet --disable-pip-version-check --requirement scripts/checks/requirements_python.txt
+    "$venv/bin/pip" install --quiet --disable-pip-version-check --no-compile \
+        --requirement scripts/checks/requirements_python.txt
     echo "$wanted" >"$venv/installed.txt"
 fi
 if [ ! -x "$(command -v slurmctld)" ] && [ "$(id -u)" = 0 ] && command -v apt-get >/dev/null; then

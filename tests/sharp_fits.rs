@@ -9,7 +9,7 @@ use crate::dock_run::run::{comparable, rows};
 use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
 
-const DOCK: &str = "dock receptor.pdb ligand.pdb --rotations 900 --native-receptor native_receptor.pdb \
+const DOCK: &str = "dock receptor.pdb ligand.pdb --rotations 300 --native-receptor native_receptor.pdb \
                     --native-ligand native_ligand.pdb --quiet";
 
 /// A folder with trypsin and its inhibitor, bound or unbound, the inhibitor turned; and the known complex.

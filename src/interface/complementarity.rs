@@ -136,7 +136,7 @@ mod tests {
 
     /// A square sheet of balls at a height, so close that it is nearly flat.
     fn sheet(height: f64) -> Vec<(Vector3<f64>, f64)> {
-        let places = (-9..=9).flat_map(|i| (-9..=9).map(move |j| (f64::from(i), f64::from(j))));
+        let places = (-7..=7).flat_map(|i| (-7..=7).map(move |j| (f64::from(i), f64::from(j))));
         places
             .map(|(i, j)| (Vector3::new(0.7 * i, 0.7 * j, height), 1.7))
             .collect()
@@ -145,7 +145,7 @@ mod tests {
     /// Flat sheets a gap apart match by exp(-gap^2 / 2) everywhere, but for what is left of their balls.
     #[test]
     fn flat_sheets_match_by_their_gap() {
-        for gap in [0.0, 0.5, 1.0] {
+        for gap in [0.0, 1.0] {
             let [one, other] = [sheet(0.0), sheet(3.4 + gap)];
             let found = of_balls([&one, &other]).unwrap();
             let expected = (-0.5 * gap * gap).exp();
