@@ -346,6 +346,17 @@ fn one_pose(answer: &Answer) -> String {
             Figure(point[2])
         )
     };
+    // What a force that vanishes is computed as.
+    let least = answer
+        .contact
+        .map_or(0.0, |contact| 1e-12 * contact.energy.abs());
+    let without_rounding = |component: f64| {
+        if component.abs() < least {
+            0.0
+        } else {
+            component
+        }
+    };
     let mut lines = vec![format!(
         "Verdict: {} (certified by {})",
         answer.found.verdict.name(),
@@ -361,17 +372,17 @@ fn one_pose(answer: &Answer) -> String {
     }
     if let Some(volume) = answer.volume {
         lines.push(format!(
-            "Shared volume: {} ± {}",
-            Figure(volume.value),
-            Figure(volume.bound)
+            "Shared volume: {} to {}",
+            Figure(volume.value - volume.bound),
+            Figure(volume.value + volume.bound)
         ));
     }
     if let Some(contact) = answer.contact {
         lines.push(format!(
             "Overlap energy {}; force on B {}, torque about its centre of mass {}",
             Figure(contact.energy),
-            point(contact.force),
-            point(contact.torque)
+            point(contact.force.map(without_rounding)),
+            point(contact.torque.map(without_rounding))
         ));
     }
     lines.push(format!(

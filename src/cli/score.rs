@@ -138,7 +138,7 @@ impl Score {
         let pose_score = scored.exact + pose_terms.sum();
         console.say(format!("\n{}", ladder_text(&scored, "Å")));
         for text in known_text(&["receptor", "ligand"], &scene.restraints) {
-            console.say(text);
+            console.say(format!("Known: {text}"));
         }
         for text in regions_text(&["receptor", "ligand"], &scene.regions) {
             console.say(text);

@@ -38,7 +38,7 @@ pub fn score_text(plan: &DockPlan, sides: &[&str]) -> String {
         text += &format!("; not by {}", off.join(", "));
     }
     for known in known_text(sides, &plan.restraints) {
-        text += &format!("; {known}");
+        text += &format!("; known: {known}");
     }
     let unknown: Vec<String> = plan.labels.iter().filter_map(unknown_text).collect();
     if !unknown.is_empty() {

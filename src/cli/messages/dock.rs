@@ -227,14 +227,14 @@ pub fn known_text(sides: &[&str], known: &Restrained) -> Vec<String> {
     for (side, residues) in sides.iter().zip(&known.predicted) {
         if !residues.is_empty() {
             let residues = counted(residues.len(), "residue");
-            lines.push(format!("The {side}: interface predictions of {residues}"));
+            lines.push(format!("interface predictions of {residues} of the {side}"));
         }
     }
     if let Some(Membrane { side, low, high }) = &known.membrane
         && let (Some(own), Some(other)) = (sides.get(*side), sides.get(1 - *side))
     {
         lines.push(format!(
-            "The {own}: in a membrane from z = {low} to {high} Å of its file, which the {other} stays out of"
+            "a membrane from z = {low} to {high} Å in the file of the {own}, which the {other} stays out of"
         ));
     }
     lines

@@ -132,11 +132,17 @@ impl<'a> SampleReport<'a> {
             ),
             None => String::new(),
         };
+        let has = |name| self.sampling.sets.iter().any(|set| set.name == name);
+        let sets = if has(SetName::A1) && has(SetName::A3) {
+            "Sets: a1 lies inside the solid; a2, which is a1 grown by epsilon, covers it; a3 covers it with the fewest balls.\n"
+        } else {
+            ""
+        };
         format!(
             "Grid: {n} x {n} x {n} nodes, {} inside, spacing {}, epsilon {}\n\n{}\n\
              Inward: the farthest that a point of the solid is from the balls, as measured.\n\
              Outward: the farthest that a point of the balls is from the solid, as measured; and a bound that it cannot exceed.\n\
-             {added}Time: {}",
+             {sets}{added}Time: {}",
             self.sampling.inside_nodes,
             Figure(grid.spacing() * self.unit),
             Figure(self.epsilon()),

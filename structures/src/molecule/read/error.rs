@@ -296,6 +296,10 @@ impl ReadError {
             Self::Specification { .. } | Self::Unnamed { .. } => {
                 "write FILE to read all chains, FILE:H,L to pick chains by their author names, or FILE:H:1-120,L to pick residues"
             }
+            Self::Missing { file } if file.to_string_lossy().contains(',') => {
+                "give one file for each side, and further conformations with --receptor-also or --ligand-also; chains are \
+                 picked with FILE:H,L"
+            }
             Self::Missing { .. } => {
                 "check the path; chains are picked with FILE:H,L and residues with FILE:H:1-120"
             }
