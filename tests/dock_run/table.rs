@@ -170,7 +170,7 @@ fn double_precision_goes_where_single_cannot() {
         run(
             folder.path(),
             &format!(
-                "dock receptor.pdb ligand.pdb --rotations 8 --per-rotation 1 --no-cluster --diagnostics {options} \
+                "dock receptor.pdb ligand.pdb --rotations 8 --per-rotation 1 --no-cluster --effects shape --diagnostics {options} \
                  -o {name} --quiet"
             ),
         );
