@@ -10,10 +10,16 @@ folder=$(realpath -m "$1")
 conf=$folder/slurm.conf
 
 if [ "${2:-}" = stop ]; then
-    for daemon in slurmd slurmctld; do
-        [ -f "$folder/$daemon.pid" ] && kill "$(cat "$folder/$daemon.pid")" 2>/dev/null || true
+    # One after another, each to its end: they write their state into the folder when they stop.
+    for daemon in slurmd slurmctld munged; do
+        [ -f "$folder/$daemon.pid" ] || continue
+        pid=$(cat "$folder/$daemon.pid")
+        kill "$pid" 2>/dev/null || true
+        for _ in $(seq 150); do
+            kill -0 "$pid" 2>/dev/null || break
+            sleep 0.2
+        done
     done
-    [ -f "$folder/munged.pid" ] && kill "$(cat "$folder/munged.pid")" 2>/dev/null || true
     [ "$(readlink /etc/slurm/slurm.conf)" = "$conf" ] && rm /etc/slurm/slurm.conf
     exit 0
 fi
