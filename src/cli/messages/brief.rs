@@ -37,8 +37,9 @@ pub fn score_text(plan: &DockPlan, sides: &[&str]) -> String {
     if !off.is_empty() {
         text += &format!("; not by {}", off.join(", "));
     }
-    for known in known_text(sides, &plan.restraints) {
-        text += &format!("; known: {known}");
+    let known = known_text(sides, &plan.restraints);
+    if !known.is_empty() {
+        text += &format!("; known: {}", known.join(", "));
     }
     let unknown: Vec<String> = plan.labels.iter().filter_map(unknown_text).collect();
     if !unknown.is_empty() {

@@ -134,7 +134,7 @@ impl<'a> SampleReport<'a> {
         };
         let has = |name| self.sampling.sets.iter().any(|set| set.name == name);
         let sets = if has(SetName::A1) && has(SetName::A3) {
-            "Sets: a1 lies inside the solid; a2, which is a1 grown by epsilon, covers it; a3 covers it with the fewest balls.\n"
+            "Sets: a1 lies inside the solid; a2, which is a1 grown by epsilon, covers it; a3 covers it with few balls.\n"
         } else {
             ""
         };
