@@ -128,7 +128,7 @@ fn cores_leave_the_card_its_share_of_the_memory() {
         return;
     }
     let folder = place();
-    let words = "dock receptor.pdb ligand.pdb --rotations 200 --engine gpu --quiet -o run";
+    let words = "dock receptor.pdb ligand.pdb --rotations 1000 --engine gpu --quiet -o run";
     run(
         folder.path(),
         &format!("{words} --threads 1000 --memory 400M"),

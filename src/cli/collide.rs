@@ -346,7 +346,7 @@ fn one_pose(answer: &Answer) -> String {
             Figure(point[2])
         )
     };
-    // What a force that vanishes is computed as.
+    // A force or torque that vanishes is computed as some 1e-15 of the energy; that is shown as 0.
     let least = answer
         .contact
         .map_or(0.0, |contact| 1e-12 * contact.energy.abs());

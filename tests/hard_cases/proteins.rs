@@ -235,10 +235,10 @@ fn proteins_meet_the_tolerance_mode_by_mode_and_pose_by_pose() {
             "{precision} at {tolerance:e}: pose {pose:e}"
         );
     };
-    for tolerance in [1e-2, 1e-4, 1e-6] {
+    for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
         check("f64", tolerance, errors::<f64>(&a, &b, tolerance));
     }
-    for tolerance in [1e-2, 1e-4] {
+    for tolerance in [1e-2, 1e-3, 1e-4] {
         check("f32", tolerance, errors::<f32>(&a, &b, tolerance));
     }
 }
