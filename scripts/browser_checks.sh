@@ -6,7 +6,7 @@ cd "$(dirname "${BASH_SOURCE[0]}")/.."
 
 target=$(realpath --canonicalize-missing "${CARGO_TARGET_DIR:-target}")
 if [ ! -d viewer/node_modules ] || [ viewer/package-lock.json -nt viewer/node_modules/.package-lock.json ]; then
-    npm ci --prefix viewer --no-audit --no-fund --silent
+    npm ci --ignore-scripts --prefix viewer --no-audit --no-fund --silent
 fi
 [ "${1:-}" != --install ] || exit 0
 

@@ -23,6 +23,7 @@ install() {
 # DockQ wants an older numpy than the rest.
 install dockq dockq
 install others rdkit gemmi solids biotite
+install deny deny
 [ "${1:-}" != --install ] || exit 0
 old_numpy() { "$target/python/dockq/bin/python" "$@"; }
 python() { "$target/python/others/bin/python" "$@"; }
