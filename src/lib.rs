@@ -53,6 +53,7 @@ pub mod report;
 pub mod restraints;
 pub mod score;
 pub mod search;
+mod shell_word;
 pub mod side_chains;
 pub mod system_limits;
 #[cfg(test)]

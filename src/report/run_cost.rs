@@ -7,6 +7,7 @@ use serde_json::Value;
 use crate::options::{DockOptions, definitions, text};
 use crate::report::html::{escaped, table};
 use crate::report::run_parts::RunReport;
+use crate::shell_word::shell_word;
 
 /// Effects, errors and times.
 pub(super) fn cost(report: &RunReport) -> String {
@@ -137,18 +138,20 @@ fn words(value: &Value) -> String {
 
 /// The options, and how to repeat the run.
 pub(super) fn options(report: &RunReport) -> String {
-    let directory = report.directory;
-    let command: Vec<&str> = report.record["machine"]["command"]
+    let quoted = |end: &str| shell_word(&format!("{}{end}", report.directory)).into_owned();
+    let [directory, record, first] = ["", "/run.json", "/top/rank_0001.pdb"].map(quoted);
+    let command: Vec<_> = report.record["machine"]["command"]
         .as_array()
         .into_iter()
         .flatten()
         .filter_map(Value::as_str)
+        .map(shell_word)
         .collect();
     let lines = [
         ("The command was", command.join(" ")),
         (
             "The same run again, with its inputs checked",
-            format!("knotdock dock --rerun {directory}/run.json -o again"),
+            format!("knotdock dock --rerun {record} -o again"),
         ),
         (
             "Further complexes",
@@ -156,11 +159,11 @@ pub(super) fn options(report: &RunReport) -> String {
         ),
         (
             "Contacts and score of one",
-            format!("knotdock interface {directory}/top/rank_0001.pdb"),
+            format!("knotdock interface {first}"),
         ),
         (
             "Distance of all poses from one that you think is right",
-            format!("knotdock evaluate {directory} --native {directory}/top/rank_0001.pdb"),
+            format!("knotdock evaluate {directory} --native {first}"),
         ),
     ];
     let is_of_solids = report.record["plan"]["unit"] != "angstrom";

@@ -9,6 +9,7 @@ use crate::options::EngineChoice;
 use crate::output::files::seal::REPORT;
 use crate::output::tables::report::counted;
 use crate::rank::sharp::SharpFinding;
+use crate::shell_word::shell_word;
 use crate::tradeoff::choice::Chosen;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_structures::molecule::LabelReport;
@@ -163,7 +164,7 @@ pub fn next_text(
     written: usize,
     has_report: bool,
 ) -> String {
-    let directory = directory.display();
+    let directory = directory.display().to_string();
     let rows = outcome.poses.len();
     let listed = match rows == outcome.clusters {
         true => counted(rows, "cluster"),
@@ -172,7 +173,7 @@ pub fn next_text(
     let mut steps = Vec::new();
     if has_report {
         steps.push((
-            format!("open {directory}/{REPORT}"),
+            format!("open {}", shell_word(&format!("{directory}/{REPORT}"))),
             "look at them in a browser".to_owned(),
         ));
     }
@@ -182,7 +183,7 @@ pub fn next_text(
             (first, last) => format!("{first}-{last}"),
         };
         steps.push((
-            format!("knotdock export {directory} --rank {ranks}"),
+            format!("knotdock export {} --rank {ranks}", shell_word(&directory)),
             format!("more complexes than the {written} in {directory}/top"),
         ));
     }

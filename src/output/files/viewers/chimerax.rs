@@ -32,15 +32,8 @@ pub(super) fn script(complexes: &[ViewedComplex]) -> String {
     text
 }
 
-/// The atoms of some chains of a model. A chain whose name is not a plain word goes by its attribute.
+/// The atoms of some chains of a model.
 fn chosen(id: usize, chains: &[String]) -> String {
-    let is_plain = |name: &str| !name.is_empty() && name.chars().all(|c| c.is_ascii_alphanumeric());
-    let chains: Vec<String> = chains
-        .iter()
-        .map(|name| match is_plain(name) {
-            true => format!("#{id}/{name}"),
-            false => format!("#{id}::chain_id=\"{name}\""),
-        })
-        .collect();
+    let chains: Vec<String> = chains.iter().map(|name| format!("#{id}/{name}")).collect();
     format!("({})", chains.join(" | "))
 }

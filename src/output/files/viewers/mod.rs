@@ -38,14 +38,23 @@ pub struct ViewedComplex {
 }
 
 impl ViewedComplex {
-    /// A complex with the chains of a map.
+    /// A complex with the chains of a map, as [`knotdock_structures::molecule::write_complex`] returns it.
+    ///
+    /// # Panics
+    /// If a written name is no word of letters and digits, which no complex has: in a script it might be a command.
     pub fn new(rank: usize, file: &str, map: &ChainMap) -> Self {
         let names = |is_receptor: bool| -> Vec<String> {
             let of_side = map
                 .chains
                 .iter()
                 .filter(|chain| (chain.partner == Partner::Receptor) == is_receptor);
-            of_side.map(|chain| chain.written.clone()).collect()
+            let words = of_side.inspect(|chain| {
+                let mut bytes = chain.written.bytes();
+                assert!(
+                    !chain.written.is_empty() && bytes.all(|byte| byte.is_ascii_alphanumeric())
+                );
+            });
+            words.map(|chain| chain.written.clone()).collect()
         };
         Self {
             rank,
@@ -84,7 +93,7 @@ mod tests {
         let complex = |rank: usize| ViewedComplex {
             rank,
             file: format!("rank_{rank:04}.pdb"),
-            chains: [vec!["A".to_owned()], vec!["H".to_owned(), "L-2".to_owned()]],
+            chains: [vec!["A".to_owned()], vec!["H".to_owned(), "L2".to_owned()]],
         };
         (1..=9).map(complex).collect()
     }
@@ -113,11 +122,41 @@ mod tests {
         assert_eq!(chimerax.matches("#e69f00").count(), 2);
     }
 
-    /// A hyphen is a range in both programs.
+    /// Found by an audit: a chain called `A")) ; cmd.system("...") #` ran a shell command in PyMOL. Whatever the chains of
+    /// an input are called, the scripts are those of chains called by words.
     #[test]
-    fn names_of_chains_are_no_ranges() {
-        assert!(pymol::script(&complexes()).contains("chain \"L-2\""));
-        assert!(chimerax::script(&complexes()).contains("::chain_id=\"L-2\""));
+    fn no_name_of_an_input_reaches_a_script() {
+        use crate::test_molecules::molecules;
+        use knotdock_structures::molecule::{Atom, Format, Molecule, write_complex};
+        use proptest::prelude::*;
+        let template = &molecules()[0].atoms[0];
+        let molecule = |names: Vec<String>| {
+            let atoms = names.into_iter().map(|chain| Atom {
+                chain,
+                ..template.clone()
+            });
+            Molecule::new(atoms.collect(), Format::Mmcif)
+        };
+        let names = proptest::collection::vec(
+            r#"[A-Za-z0-9]{0,3}|[ -~\n\té;"'\\()#/]{0,12}|\PC{0,4}"#,
+            1..6,
+        );
+        proptest!(|(receptor in names.clone(), ligand in names)| {
+            let [receptor, ligand] = [receptor, ligand].map(molecule);
+            for format in [Format::Pdb, Format::Mmcif] {
+                let mut file = Vec::new();
+                let map = write_complex(&mut file, format, &[&receptor, &ligand], &[]).unwrap();
+                let complex = ViewedComplex::new(1, "rank_0001.pdb", &map);
+                let (mut plain, mut words) = (complex.clone(), ('A'..='Z').map(String::from));
+                for names in &mut plain.chains {
+                    names.iter_mut().for_each(|name| *name = words.next().unwrap());
+                }
+                for write in [pymol::script, chimerax::script] {
+                    let marks = |text: String| text.replace(|c: char| c.is_ascii_alphanumeric(), "");
+                    prop_assert_eq!(marks(write(&[complex.clone()])), marks(write(&[plain.clone()])));
+                }
+            }
+        });
     }
 
     /// Where no complex was written there is nothing to show, and the scripts are whole.

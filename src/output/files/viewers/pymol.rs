@@ -42,7 +42,7 @@ fn object(complex: &ViewedComplex) -> String {
     format!("rank_{:04}", complex.rank)
 }
 
-/// The atoms of some chains of an object. Names stand in quotes, for a hyphen would be a range.
+/// The atoms of some chains of an object.
 fn chosen(object: &str, chains: &[String]) -> String {
     let chains: Vec<String> = chains
         .iter()

@@ -79,8 +79,28 @@ impl ChainMap {
             .map_or(original, |chain| &chain.written)
     }
 
-    /// Gives every chain a unique name in the given format.
-    pub(crate) fn assign(format: Format, molecules: &[&Molecule]) -> Result<Self, WriteError> {
+    /// Gives every chain of a complex a unique name of letters and digits. Scripts select chains by these names, so that
+    /// nothing else of an input file may reach them.
+    pub(crate) fn of_complex(format: Format, molecules: &[&Molecule]) -> Result<Self, WriteError> {
+        let is_word = |name: &str| name.bytes().all(|byte| byte.is_ascii_alphanumeric());
+        Self::assign(format, molecules, is_word)
+    }
+
+    /// Gives every chain of one molecule a unique name that the format can hold.
+    pub(crate) fn of_molecule(format: Format, molecule: &Molecule) -> Result<Self, WriteError> {
+        let is_graphic = |name: &str| name.bytes().all(|byte| byte.is_ascii_graphic());
+        match format {
+            Format::Pdb => Self::assign(format, &[molecule], is_graphic),
+            Format::Mmcif => Self::assign(format, &[molecule], |_| true),
+        }
+    }
+
+    /// Lets the names stay that a rule allows and no chain before has, and gives the others fresh ones.
+    fn assign(
+        format: Format,
+        molecules: &[&Molecule],
+        may_stay: impl Fn(&str) -> bool,
+    ) -> Result<Self, WriteError> {
         let mut chains: Vec<ChainName> = Vec::new();
         for (place, molecule) in molecules.iter().enumerate() {
             let partner = Partner::at(place);
@@ -97,14 +117,11 @@ impl ChainMap {
         }
         let mut taken: HashSet<String> = HashSet::new();
         for chain in &mut chains {
-            let can_stay = match format {
-                Format::Pdb => {
-                    chain.original.len() == 1
-                        && chain.original.bytes().all(|byte| byte.is_ascii_graphic())
-                }
+            let fits = match format {
+                Format::Pdb => chain.original.len() == 1,
                 Format::Mmcif => !chain.original.is_empty(),
             };
-            if can_stay && taken.insert(chain.original.clone()) {
+            if fits && may_stay(&chain.original) && taken.insert(chain.original.clone()) {
                 chain.written.clone_from(&chain.original);
             }
         }

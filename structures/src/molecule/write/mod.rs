@@ -1,8 +1,8 @@
 //! Writing molecules and complexes, as PDB or mmCIF.
 //!
 //! Atoms keep their order, names, residue numbers, insertion codes, elements, occupancies and temperature factors. A
-//! complex gets unique chain names: a chain keeps its name unless a chain before it (receptor first) has it, or PDB's
-//! single column cannot hold it. The map stands in the file's remarks and is returned.
+//! complex gets unique chain names: a chain keeps its name unless a chain before it (receptor first) has it, PDB's single
+//! column cannot hold it, or it has other characters than letters and digits. The map stands in the file's remarks and is returned.
 
 pub(crate) mod chains;
 pub(crate) mod error;
@@ -31,7 +31,7 @@ pub fn complex_format(molecules: &[&Molecule]) -> Format {
     if molecules.iter().any(|one| one.format != Format::Pdb) {
         return Format::Mmcif;
     }
-    let fits = ChainMap::assign(Format::Pdb, molecules)
+    let fits = ChainMap::of_complex(Format::Pdb, molecules)
         .and_then(|map| pdb::check(&complex_rows(molecules, &map)));
     match fits {
         Ok(()) => Format::Pdb,
@@ -51,7 +51,7 @@ pub fn write_complex<W: Write>(
     molecules: &[&Molecule],
     remarks: &[String],
 ) -> Result<ChainMap, WriteError> {
-    let map = ChainMap::assign(format, molecules)?;
+    let map = ChainMap::of_complex(format, molecules)?;
     let mut remarks = remarks.to_vec();
     remarks.extend(map.remarks());
     let rows = complex_rows(molecules, &map);
@@ -84,7 +84,7 @@ pub fn write_renamed<W: Write>(
     molecule: &Molecule,
     remarks: &[String],
 ) -> Result<(), WriteError> {
-    let map = ChainMap::assign(format, &[molecule])?;
+    let map = ChainMap::of_molecule(format, molecule)?;
     let renamed = map
         .chains
         .iter()
@@ -105,7 +105,7 @@ pub fn write_renamed<W: Write>(
 /// # Errors
 /// [`WriteError::DoesNotFit`] with what does not.
 pub fn fits(format: Format, molecule: &Molecule) -> Result<(), WriteError> {
-    let map = ChainMap::assign(format, &[molecule])?;
+    let map = ChainMap::of_molecule(format, molecule)?;
     match format {
         Format::Pdb => pdb::check(&complex_rows(&[molecule], &map)),
         Format::Mmcif => Ok(()),

@@ -41,7 +41,7 @@ impl<'a, W: Write> ModelWriter<'a, W> {
     /// # Errors
     /// [`WriteError`] when the writer fails, a number is not finite, or the format cannot hold the complex.
     pub fn write(&mut self, molecules: &[&Molecule]) -> Result<ChainMap, WriteError> {
-        let map = ChainMap::assign(self.format, molecules)?;
+        let map = ChainMap::of_complex(self.format, molecules)?;
         let rows = complex_rows(molecules, &map);
         check(self.format, &rows)?;
         self.models += 1;
