@@ -16,6 +16,7 @@ mod batch;
 mod collide;
 mod collide_exact;
 mod command_line;
+mod complex_models;
 mod config;
 mod crash;
 mod dock_run;

@@ -26,6 +26,7 @@ use serde_json::{Value, json};
 use crate::cli::arguments::machine::machine;
 use crate::cli::arguments::native::measure;
 use crate::cli::docking::Docking;
+use crate::cli::inputs::request::Known;
 use crate::cli::messages::brief::{cost_text, next_text};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{
@@ -78,9 +79,13 @@ impl Docked {
         let mut quality: Vec<Column> = restraints::met(&docking.prepared.plan, &outcome.poses)
             .into_iter()
             .collect();
-        if let Some(evaluator) = &docking.evaluator {
+        if let Some(known) = &docking.known {
             let rows = pose_rows(&outcome.poses);
-            quality.extend(quality::columns(&measure(evaluator, &rows)));
+            let measured = known.evaluator().map(|evaluator| measure(evaluator, &rows));
+            let measured = measured.unwrap_or_default().into_iter();
+            let mut found: Vec<_> = measured.map(|(quality, _)| Some(quality)).collect();
+            found.resize(rows.len(), None);
+            quality.extend(quality::columns(&found));
         }
         let wide = WIDE_COLUMNS.map(|name| {
             let found = quality.iter().find(|column| column.name == name);
@@ -164,7 +169,7 @@ impl Docked {
         let (docking, outcome) = (&self.docking, &self.outcome);
         let Docking {
             request,
-            evaluator,
+            known,
             prepared,
             ..
         } = docking;
@@ -212,7 +217,7 @@ impl Docked {
             },
             files: staging.checksums()?,
             chains: written.chains.as_ref(),
-            matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
+            matching: known.as_ref().map(Known::entry).transpose()?,
             timing: docking.clock.timing(outcome),
             machine: Machine {
                 chosen: docking.chosen.clone(),

@@ -7,7 +7,6 @@ use crate::dock::memory::process;
 use crate::dock::outcome::DockOutcome;
 use crate::dock::pair::{PreparedPair, Preparer};
 use crate::dock::plan::DockPlan;
-use crate::evaluate::Evaluator;
 use crate::options::{Precision, SharpChoice};
 use crate::output::records::manifest::{EffectTime, Timing};
 use crate::output::records::recorded_run::RecordedRun;
@@ -15,9 +14,9 @@ use crate::search::deadline::Deadline;
 use crate::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use crate::tradeoff::cost_model::{CostModel, Workload};
 
-use crate::cli::arguments::native::{NativeFiles, announce};
+use crate::cli::arguments::native::NativeFiles;
 use crate::cli::calibrate::cost_model;
-use crate::cli::inputs::request::Request;
+use crate::cli::inputs::request::{Known, Request};
 use crate::cli::messages::brief::{expected_text, score_text};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{assumed, regions_text};
@@ -30,7 +29,7 @@ pub struct Docking {
     pub(super) directory: PathBuf,
     /// Whether another run there is replaced.
     pub(super) force: bool,
-    pub(super) evaluator: Option<Evaluator>,
+    pub(super) known: Option<Known>,
     pub(super) prepared: PreparedPair,
     pub(super) chosen: Option<Chosen>,
     /// Where the run has a budget.
@@ -52,10 +51,7 @@ impl Docking {
             request.bodies.note_shared_chains();
         }
         request.bodies.describe(arrangement, console);
-        let evaluator = request.evaluator()?;
-        if let Some(evaluator) = &evaluator {
-            announce(evaluator, console);
-        }
+        let known = request.known(console)?;
         let (prepared, chosen, deadline, model) = if wanted == Wanted::default() {
             (request.plan(console)?, None, None, None)
         } else {
@@ -95,7 +91,7 @@ impl Docking {
             request,
             directory,
             force,
-            evaluator,
+            known,
             prepared,
             chosen,
             deadline,

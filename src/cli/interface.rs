@@ -14,7 +14,7 @@ use serde_json::json;
 
 use crate::cli::arguments::options::{OfScore, OptionArguments};
 use crate::cli::arguments::output_file::check_output;
-use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_file};
+use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_model};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::library_errors::refused;
@@ -25,10 +25,11 @@ use crate::cli::messages::library_errors::refused;
 #[derive(Args, Debug)]
 pub struct InterfaceCommand {
     /// Complex files (.pdb, .ent, .cif, each also .gz), and optionally the chains of both sides, such as H,L A. Without
-    /// them the sides are those that a complex of knotdock names, or the two chains of a file that has two.
+    /// them the sides are those that a complex of knotdock names, or the two chains of a file that has two. Every model of
+    /// a file is described.
     #[arg(value_name = "COMPLEX ... [CHAINS CHAINS]", required = true)]
     words: Vec<String>,
-    /// Write a row for each file to this table.
+    /// Write a row for each model of each file to this table.
     #[arg(short, long, value_name = "FILE")]
     output: Option<PathBuf>,
     /// Write a row for each pair of residues in contact to this table.
@@ -57,8 +58,10 @@ impl InterfaceCommand {
         for file in [&self.output, &self.contacts].into_iter().flatten() {
             check_output(file, read.iter().map(PathBuf::as_path), self.force)?;
         }
-        let (rows, code) =
-            for_each_file(files, console, |file| row(file, sides.as_ref(), options))?;
+        let (files, reading) = ((files, sides.as_ref()), options.input.reading());
+        let (rows, code) = for_each_model(files, &reading, console, |file, sides| {
+            row(file, sides, options)
+        })?;
         if let Some(path) = &self.output {
             write_whole(path, |file| write_rows(file, &rows))?;
         }
@@ -74,13 +77,8 @@ impl InterfaceCommand {
     }
 }
 
-/// The interface of a file.
-fn row(
-    file: &str,
-    chains: Option<&[String; 2]>,
-    options: &DockOptions,
-) -> Result<InterfaceRow, Failure> {
-    let sides = ComplexSides::read(file, chains, &options.input.reading())?;
+/// The interface of a model of a file.
+fn row(file: &str, sides: ComplexSides, options: &DockOptions) -> Result<InterfaceRow, Failure> {
     let molecules: [&Molecule; 2] = sides.molecules.each_ref();
     let interface = Interface::of(molecules, options.terms.ph);
     if interface.pairs.is_empty() {
@@ -94,6 +92,7 @@ fn row(
     let score: PlacedScore = score_in_place(molecules, options).map_err(refused)?;
     Ok(InterfaceRow {
         file: file.to_owned(),
+        model: sides.model,
         chains: sides.chains,
         interface,
         score,
@@ -189,6 +188,7 @@ fn terms(score: &PlacedScore) -> String {
 fn listing(rows: &[InterfaceRow]) -> String {
     let header = [
         "file",
+        "model",
         "chains",
         "contacts",
         "hydrogen bonds",
@@ -202,6 +202,7 @@ fn listing(rows: &[InterfaceRow]) -> String {
         let interface = &row.interface;
         vec![
             row.file.clone(),
+            row.model.to_string(),
             format!("{} {}", row.chains[0], row.chains[1]),
             interface.pairs.len().to_string(),
             interface.hydrogen_bonds.to_string(),

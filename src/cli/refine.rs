@@ -17,7 +17,7 @@ use crate::threads;
 use clap::Args;
 use serde_json::json;
 
-use crate::cli::arguments::native::{NativeArguments, NativeFiles, announce};
+use crate::cli::arguments::native::{NativeArguments, NativeFiles};
 use crate::cli::arguments::output_file::{check_not_read, is_same};
 use crate::cli::arguments::ranks::Ranks;
 use crate::cli::inputs::bodies::Bodies;
@@ -95,10 +95,7 @@ impl Refine {
             check_not_read(&folder.join(name), read.iter().copied())?;
         }
         let pair = [&receptor.molecule, &ligand.molecule];
-        let known = native.map(|files| Known::new(files, pair)).transpose()?;
-        if let Some(known) = &known {
-            announce(&known.evaluator, console);
-        }
+        let known = native.and_then(|files| Known::new(files, pair, console));
         let options = RefineOptions {
             moves: !self.no_move,
             max_move: self.max_move,

@@ -17,7 +17,7 @@ use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::{ChainMap, Molecule};
 use rayon::prelude::*;
 
-use crate::cli::arguments::native::NativeFiles;
+use crate::cli::arguments::native::{NativeFiles, announce};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -29,10 +29,23 @@ pub struct Known {
 }
 
 impl Known {
-    /// Matches the complex with receptor and ligand.
-    pub fn new(files: NativeFiles, [receptor, ligand]: [&Molecule; 2]) -> Result<Self, Failure> {
-        let evaluator = files.evaluator(receptor, ligand)?;
-        Ok(Self { files, evaluator })
+    /// Matches the complex with receptor and ligand; warns if it does not match.
+    pub fn new(
+        files: NativeFiles,
+        [receptor, ligand]: [&Molecule; 2],
+        console: Console,
+    ) -> Option<Self> {
+        match files.evaluator(receptor, ligand) {
+            Ok(evaluator) => {
+                files.warn(console);
+                announce(&evaluator, console);
+                Some(Self { files, evaluator })
+            }
+            Err(failure) => {
+                console.warn(format!("no pose is measured: {}", failure.line_of_table()));
+                None
+            }
+        }
     }
 
     /// Qualities of a pose and of what it was refined to.

@@ -19,9 +19,9 @@ use clap::Args;
 use serde_json::json;
 
 use crate::cli::arguments::machine::{machine, settled};
-use crate::cli::arguments::native::{NativeArguments, announce};
+use crate::cli::arguments::native::NativeArguments;
 use crate::cli::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
-use crate::cli::inputs::request::Request;
+use crate::cli::inputs::request::{Known, Request};
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::set_aside::warn_set_aside;
@@ -86,10 +86,7 @@ impl TradeoffCommand {
             PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))
         });
         request.bodies.describe(request.arrangement(), console);
-        let evaluator = request.evaluator()?;
-        if let Some(evaluator) = &evaluator {
-            announce(evaluator, console);
-        }
+        let known = request.known(console)?;
         let first = request.plan(console)?;
         console.say(format!("\nThe default: {}\n", first.plan));
         let machine = machine(&first.plan);
@@ -104,7 +101,7 @@ impl TradeoffCommand {
             first,
             &request.options,
             &parameters,
-            evaluator.as_ref(),
+            known.as_ref().and_then(Known::evaluator),
             &progress,
         )
         .map_err(|error| failure(&error))?;
@@ -119,7 +116,7 @@ impl TradeoffCommand {
             options: &request.options,
             tradeoff: &tradeoff,
             advice: advice.as_ref(),
-            matching: evaluator.as_ref().map(|evaluator| evaluator.report()),
+            matching: known.as_ref().map(Known::entry).transpose()?,
             files: staging.checksums()?,
             machine,
         })

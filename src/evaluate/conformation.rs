@@ -4,6 +4,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::Molecule;
 
 use super::EvaluateError;
+use super::chain_choice::ChainChoice;
 use super::matching::placement::Placement;
 use super::matching::placements::placements;
 use super::matching::superposition::MAX_FIT_RMSD;
@@ -78,7 +79,7 @@ pub fn superpose(
 ) -> Result<Superposed, ConformationError> {
     let moved = Residues::of(conformation, "conformation")?;
     let fixed = Residues::of(first, "first conformation")?;
-    let mut found = placements(&moved, &fixed);
+    let mut found = placements(&moved, &fixed, &ChainChoice::default());
     let most = found.iter().map(Placement::matched).max().unwrap_or(0);
     let residues = moved.residues.len().min(fixed.residues.len());
     if most == 0 || (most as f64) < MIN_SHARE * residues as f64 {

@@ -160,6 +160,11 @@ impl NativeContacts {
         self.pairs.len()
     }
 
+    /// The largest share, 0 to 1, of the native's contacts that any pose can keep.
+    pub fn most_kept(&self) -> f64 {
+        self.pairs.len() as f64 / self.total.max(1) as f64
+    }
+
     /// The share, 0 to 1, of the native's contacts that are contacts with the ligand at `pose`.
     pub fn share_kept(&self, pose: &Pose) -> f64 {
         if self.total == 0 {

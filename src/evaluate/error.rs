@@ -1,7 +1,5 @@
 //! Why poses cannot be judged by the native given.
 
-use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
-
 /// Why an [`Evaluator`](super::Evaluator) could not be made.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum EvaluateError {
@@ -30,31 +28,15 @@ pub enum EvaluateError {
         "receptor and ligand match the same chain of the native, which has only one copy of it"
     )]
     OneCopy,
-    /// A docked chain is elsewhere in the native.
-    #[error(
-        "the docked {side} does not fit the native: chain {chain} is the native's {native_chain}, which stands {distance:.1} Å \
-         RMSD from where the rest of the {side} has it"
-    )]
-    Displaced {
-        /// "receptor" or "ligand".
-        side: &'static str,
-        /// The docked chain.
+    /// A choice of chains names one that is not there.
+    #[error("no chain {chain} is in the {molecule}, which has {}", chains.join(", "))]
+    UnknownChain {
+        /// "docked molecules" or "native".
+        molecule: &'static str,
+        /// The chain named.
         chain: String,
-        /// The native's.
-        native_chain: String,
-        /// How far the one is from where it should be, RMSD in Å.
-        distance: f64,
-    },
-    /// A docked side has another shape than the native's.
-    #[error(
-        "the docked {side} does not fit the native: its backbone lies {rmsd:.1} Å RMSD from the native's; at most \
-         {MAX_FIT_RMSD:.0} Å mean anything"
-    )]
-    Superposition {
-        /// "receptor" or "ligand".
-        side: &'static str,
-        /// Backbone RMSD after superposing, in Å.
-        rmsd: f64,
+        /// The chains that are there.
+        chains: Vec<String>,
     },
     /// Too little of a docked side has a match for the figures to mean anything.
     #[error(
@@ -123,13 +105,8 @@ impl EvaluateError {
                 "give a native with both copies: of a crystal, `knotdock inspect FILE --assembly 1 --write COMPLEX.pdb` builds the \
                  biological assembly"
             }
-            Self::Displaced { .. } => {
-                "name the native's chains that belong together, as in --native FILE:A,B,C; or dock the chain apart, if it moves \
-                 when the complex forms"
-            }
-            Self::Superposition { .. } => {
-                "check that the native is of the same proteins, and name its chains, as in --native FILE:A,B; a molecule that \
-                 changes its shape that much is not docked as a rigid body"
+            Self::UnknownChain { .. } => {
+                "name chains of protein or nucleic acid as DOCKED:NATIVE, such as --map A:E,B:F"
             }
             Self::DockedShare { .. } => {
                 "check that the native's chain is that of the docked molecule and no fragment or other peptide. Where the native \

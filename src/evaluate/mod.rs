@@ -6,9 +6,10 @@
 //!   frame. A [`Pose`] takes a ligand atom x to R x + t in the receptor's frame. Lengths are in Å.
 //! - **Residues** are matched by number and insertion code where these agree, and by sequence otherwise. Only equal
 //!   residues are matched.
-//! - **Chains** are matched by sequence and place, whatever their names: each side is superposed on the native's
-//!   chains. Of the native's copies those are taken that superpose, touch and have most contacts. Where identical
-//!   chains of that complex can be matched in several ways, each pose gets the one with the best DockQ.
+//! - **Chains** are matched by sequence, whatever their names. Of all assignments to native chains that touch, each pose
+//!   gets the one with its best DockQ, as in DockQ 2; names decide between equal ones. A [`ChainChoice`] restricts them.
+//!   Of a side of several chains, every pair of equal chains is superposed, which fixes the others. Contacts of fewer
+//!   than 10 residues, and of less than a fifth of the largest interface, count only if the user names chains.
 //! - **Backbone** is N, CA, C and O, and phosphate and sugar in nucleic acids, of matched residues, where both have the
 //!   atom. Hydrogens, waters, ions, cofactors and glycans play no part.
 //! - `irmsd`: backbone of the native's interface residues (any heavy atom within 10 Å across) after superposing them.
@@ -20,13 +21,16 @@
 //! - `dockq`: as DockQ 2.1.3 computes it. DockQ pairs residues by sequence alone: where a residue is missing beside
 //!   one of the same kind it may pair the wrong one. (LEU 8 of 1PPE's unbound ligand is paired with LEU 7, since the
 //!   native lacks 8.) Then our figures are those that it gives for the pairs that the numbers name.
-//! - `capri`: by the rules of [`Capri`] from `fnat`, `irmsd` and `lrmsd`.
+//! - `capri`: by the rules of [`Capri`] from `fnat`, `irmsd` and `lrmsd`; `incorrect` if the backbone of a side lies more
+//!   than 15 Å RMSD from the native's.
 //!
 //! # Cost
 //!
 //! [`Evaluator::new`] aligns, superposes and lists contacts once. A pose then costs one eigenvalue problem of a 4 x 4
-//! matrix, three quadratic forms and the contacts' atoms, whatever the size of the molecules.
+//! matrix, three quadratic forms and the contacts' atoms, whatever the size of the molecules. Of several assignments
+//! only those are counted through whose RMSDs allow the best DockQ (branch and bound).
 
+mod chain_choice;
 mod conformation;
 mod contacts;
 mod criterion;
@@ -49,6 +53,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::Molecule;
 use serde::Serialize;
 
+pub use chain_choice::ChainChoice;
 pub use conformation::{ConformationError, Superposed, superpose};
 pub use criterion::Criterion;
 pub use dockq::{Capri, dockq};
@@ -57,12 +62,11 @@ pub use native::Native;
 pub use report::{ChainMatch, MatchMethod, MatchReport, NativeComplex, SideMatch};
 pub use shared_chains::{SharedChains, shared_chains};
 
-use crate::evaluate::matching::placement::Placement;
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use contacts::{AcrossPair, NativeContacts, pairs_across};
 use native::{Groups, Way, check_docked_share};
 use residues::Residues;
-use rmsd::{RmsdForms, Side, ligand_is_smaller};
+use rmsd::{RmsdForms, Rmsds, Side, ligand_is_smaller};
 
 /// Least share of a side's native interface residues that must be matched for its figures to mean anything.
 const MIN_INTERFACE_SHARE: f64 = 0.5;
@@ -84,33 +88,24 @@ pub struct PoseQuality {
     pub capri: Capri,
 }
 
+/// DockQ figures that differ by less are equal: rounding does not decide between assignments.
+const EQUAL_DOCKQ: f64 = 1e-9;
+
 /// Everything about one way of matching that evaluating a pose needs.
 #[derive(Clone, Debug)]
 struct Arrangement {
     rmsds: RmsdForms,
     contacts: NativeContacts,
-}
-
-impl Arrangement {
-    fn evaluate(&self, pose: &Pose) -> PoseQuality {
-        let rmsds = self.rmsds.at(pose);
-        let fnat = self.contacts.share_kept(pose);
-        PoseQuality {
-            irmsd: rmsds.interface,
-            lrmsd: rmsds.ligand,
-            fnat,
-            dockq: dockq(fnat, rmsds.interface, rmsds.ligand),
-            capri: Capri::of(fnat, rmsds.interface, rmsds.ligand),
-        }
-    }
+    /// Whether both sides have the native's shape.
+    fits: bool,
+    report: MatchReport,
 }
 
 /// A receptor, a ligand and their native, prepared to evaluate poses.
 #[derive(Clone, Debug)]
 pub struct Evaluator {
-    first: Arrangement,
-    others: Vec<Arrangement>,
-    report: MatchReport,
+    /// Never empty; of equal DockQ the first is taken.
+    arrangements: Vec<Arrangement>,
 }
 
 impl Evaluator {
@@ -118,62 +113,108 @@ impl Evaluator {
     ///
     /// # Errors
     /// [`EvaluateError`] when a molecule has no residues or no finite coordinates, or when the native has no
-    /// contacts. Also when a side does not fit the native's, or too little of the native's interface or of a docked
-    /// side is matched.
+    /// contacts. Also when too little of the native's interface or of a docked side is matched.
     pub fn new(
         receptor: &Molecule,
         ligand: &Molecule,
         native: Native,
     ) -> Result<Self, EvaluateError> {
+        Self::with_chains(receptor, ligand, native, &ChainChoice::default())
+    }
+
+    /// Matches as [`Self::new`], with native chains that the user chooses.
+    ///
+    /// # Errors
+    /// Those of [`Self::new`], and [`EvaluateError::UnknownChain`].
+    pub fn with_chains(
+        receptor: &Molecule,
+        ligand: &Molecule,
+        native: Native,
+        choice: &ChainChoice,
+    ) -> Result<Self, EvaluateError> {
         let receptor = Residues::of(receptor, "receptor")?;
         let ligand = Residues::of(ligand, "ligand")?;
-        let found = native::ways(&receptor, &ligand, native)?;
+        let found = native::ways(&receptor, &ligand, native, choice)?;
         let across: Vec<Vec<AcrossPair>> = found
             .groups
             .iter()
             .map(|groups| pairs_across(&groups.receptor.residues, &groups.ligand.residues))
             .collect();
-        let mut prepared: Vec<(Arrangement, MatchReport)> = Vec::new();
+        let mut arrangements: Vec<Arrangement> = Vec::new();
         let mut first_error = None;
         for way in &found.ways {
             let (groups, across) = (&found.groups[way.groups], &across[way.groups]);
             match arrange(&receptor, &ligand, way, groups, across) {
-                Ok(arrangement) => prepared.push(arrangement),
+                Ok(arrangement) => arrangements.push(arrangement),
                 Err(error) => first_error = first_error.or(Some(error)),
             }
         }
-        let permutations = prepared.len();
-        let mut prepared = prepared.into_iter();
-        let Some((first, report)) = prepared.next() else {
+        if arrangements.is_empty() {
             return Err(first_error.unwrap_or(EvaluateError::Unmatched { side: "receptor" }));
-        };
-        Ok(Self {
-            first,
-            others: prepared.map(|(arrangement, _)| arrangement).collect(),
-            report: MatchReport {
-                permutations,
-                complexes: found.complexes,
-                ..report
-            },
-        })
+        }
+        let permutations = arrangements.len();
+        for Arrangement { report, .. } in &mut arrangements {
+            report.permutations = permutations;
+            report.complexes.clone_from(&found.complexes);
+            report.unused_native_chains.clone_from(&found.unused);
+        }
+        Ok(Self { arrangements })
     }
 
-    /// Report on the matching.
+    /// Report on the matching, of the first way.
     pub fn report(&self) -> &MatchReport {
-        &self.report
+        &self.arrangements[0].report
     }
 
     /// Judges one pose of the ligand.
     pub fn evaluate(&self, pose: &Pose) -> PoseQuality {
-        let first = self.first.evaluate(pose);
-        self.others.iter().fold(first, |best, other| {
-            let quality = other.evaluate(pose);
-            if quality.dockq > best.dockq {
-                quality
-            } else {
-                best
+        self.best(pose).0
+    }
+
+    /// Judges one pose of the ligand, with the report of the way in which it is matched.
+    pub fn best(&self, pose: &Pose) -> (PoseQuality, &MatchReport) {
+        let bounded = self.arrangements.iter().enumerate().map(|(place, one)| {
+            let rmsds = one.rmsds.at(pose);
+            let bound = dockq(one.contacts.most_kept(), rmsds.interface, rmsds.ligand);
+            (bound, place, rmsds)
+        });
+        let mut bounded: Vec<_> = bounded.collect();
+        bounded.sort_by(|a, b| b.0.total_cmp(&a.0));
+        let mut best: Option<(PoseQuality, usize)> = None;
+        for (bound, place, rmsds) in bounded {
+            if best.is_some_and(|(best, _)| bound < best.dockq - EQUAL_DOCKQ) {
+                break;
             }
-        })
+            let quality = self.arrangements[place].quality(pose, rmsds);
+            let is_better = best.is_none_or(|(known, known_place)| {
+                let gain = quality.dockq - known.dockq;
+                gain > EQUAL_DOCKQ || (gain >= -EQUAL_DOCKQ && place < known_place)
+            });
+            if is_better {
+                best = Some((quality, place));
+            }
+        }
+        let (quality, place) = best.unwrap_or_else(|| {
+            let first = &self.arrangements[0];
+            (first.quality(pose, first.rmsds.at(pose)), 0)
+        });
+        (quality, &self.arrangements[place].report)
+    }
+}
+
+impl Arrangement {
+    fn quality(&self, pose: &Pose, rmsds: Rmsds) -> PoseQuality {
+        let fnat = self.contacts.share_kept(pose);
+        PoseQuality {
+            irmsd: rmsds.interface,
+            lrmsd: rmsds.ligand,
+            fnat,
+            dockq: dockq(fnat, rmsds.interface, rmsds.ligand),
+            capri: match self.fits {
+                true => Capri::of(fnat, rmsds.interface, rmsds.ligand),
+                false => Capri::Incorrect,
+            },
+        }
     }
 }
 
@@ -184,12 +225,10 @@ fn arrange(
     way: &Way,
     groups: &Groups,
     across: &[AcrossPair],
-) -> Result<(Arrangement, MatchReport), EvaluateError> {
+) -> Result<Arrangement, EvaluateError> {
     if !across.iter().any(|pair| pair.contact) {
         return Err(EvaluateError::NoContact);
     }
-    check_fit("receptor", &way.receptor)?;
-    check_fit("ligand", &way.ligand)?;
     let receptor_pairs: Vec<_> = way.receptor.pairs().collect();
     let ligand_pairs: Vec<_> = way.ligand.pairs().collect();
     let rmsds = RmsdForms::new(
@@ -217,8 +256,13 @@ fn arrange(
     );
     let sides = side_matches([receptor, ligand], way, groups, across, &rmsds);
     check_matched(&sides, &rmsds)?;
-    let report = match_report(sides, groups, &contacts);
-    Ok((Arrangement { rmsds, contacts }, report))
+    let (receptor_rmsd, ligand_rmsd) = rmsds.of_the_parts();
+    Ok(Arrangement {
+        fits: receptor_rmsd.max(ligand_rmsd) <= MAX_FIT_RMSD,
+        report: match_report(sides, groups, &contacts),
+        rmsds,
+        contacts,
+    })
 }
 
 /// Report on the matching of receptor and ligand.
@@ -292,31 +336,28 @@ fn match_report(
         } else {
             "receptor"
         },
+        native_chains: assigned([&receptor, &ligand]),
         permutations: 1,
         complexes: Vec::new(),
         warnings: Vec::new(),
-        unused_native_chains: groups.unused.clone(),
+        unused_native_chains: Vec::new(),
         receptor,
         ligand,
     }
     .warned()
 }
 
-/// Refuses a side that does not fit the native's as one rigid body.
-fn check_fit(side: &'static str, placement: &Placement) -> Result<(), EvaluateError> {
-    if let Some(displaced) = &placement.displaced {
-        return Err(EvaluateError::Displaced {
-            side,
-            chain: displaced.chain.clone(),
-            native_chain: displaced.native_chain.clone(),
-            distance: displaced.distance,
-        });
+/// The chains of both sides with the native's, each pair once.
+fn assigned(sides: [&SideMatch; 2]) -> String {
+    let mut pairs: Vec<String> = Vec::new();
+    for side in sides {
+        let mut own: Vec<_> = side.chains.iter().map(ChainMatch::names).collect();
+        own.sort();
+        own.dedup();
+        pairs.extend(
+            own.into_iter()
+                .map(|(docked, native)| format!("{docked}:{native}")),
+        );
     }
-    if placement.rmsd > MAX_FIT_RMSD {
-        return Err(EvaluateError::Superposition {
-            side,
-            rmsd: placement.rmsd,
-        });
-    }
-    Ok(())
+    pairs.join(",")
 }

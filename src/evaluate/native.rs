@@ -5,6 +5,7 @@ use std::collections::HashMap;
 use knotdock_structures::molecule::Molecule;
 
 use super::EvaluateError;
+use super::chain_choice::ChainChoice;
 use super::report::NativeComplex;
 use super::residues::Residues;
 use crate::evaluate::matching::copies::{Combination, PlacedCopy, Uncombined, combinations};
@@ -14,9 +15,8 @@ use crate::evaluate::matching::placements::placements;
 /// The known answer that poses are judged by.
 #[derive(Clone, Copy, Debug)]
 pub enum Native<'a> {
-    /// One file with the whole complex, perhaps in several copies. Its chains go to the side whose chains they match
-    /// and superpose on; of several complexes the one with the largest interface is taken. Where receptor and ligand
-    /// are the same chain, both ways round are tried for every pose.
+    /// One file with the whole complex, perhaps in several copies. Every assignment of its chains that the sequences
+    /// allow is tried for every pose, and the one with the best DockQ is taken.
     Complex(&'a Molecule),
     /// The two sides as separate molecules, in one common frame.
     Pair {
@@ -31,18 +31,17 @@ pub enum Native<'a> {
 /// in it.
 const MIN_DOCKED_SHARE: f64 = 0.25;
 const ENOUGH_RESIDUES: usize = 50;
-/// Share of what the first way matches that another must match: paralogues would pass for each other.
-const MIN_OF_FIRST: f64 = 0.9;
-/// Most placements kept of one side, the best-fitting ones: enough for every turn of an octahedral 24-mer.
-const MOST: usize = 24;
+/// Share of the best identity, of equal residues among the aligned ones, that a placement must have: paralogues would
+/// pass for each other.
+const MIN_IDENTITY_OF_BEST: f64 = 0.9;
+/// Most complexes that are listed.
+const MOST_LISTED: usize = 24;
 
 /// The native's two sides.
 #[derive(Clone, Debug)]
 pub(super) struct Groups {
     pub receptor: Residues,
     pub ligand: Residues,
-    /// Names of chains that belong to neither.
-    pub unused: Vec<String>,
 }
 
 /// Part of a complex: segments, each with the residues of it that belong to the part.
@@ -57,26 +56,28 @@ pub(super) struct Way {
     pub ligand: Placement,
 }
 
-/// Every way to see the docked sides in the native, the likeliest first.
+/// Every way to see the docked sides in the native, those of most equal chain names first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ways {
     pub groups: Vec<Groups>,
     pub ways: Vec<Way>,
-    /// The complexes that the native holds, the one taken first.
+    /// The complexes that the native holds, at most [`MOST_LISTED`], those that poses are measured by first.
     pub complexes: Vec<NativeComplex>,
+    /// Names of the native's chains that belong to no way.
+    pub unused: Vec<String>,
 }
 
-/// The ways to see the docked sides in the native: all of one complex, so that every pose may be given the best of
-/// them.
+/// The ways to see the docked sides in the native.
 ///
 /// # Errors
-/// [`EvaluateError::NoResidues`], [`EvaluateError::NotFinite`]; [`EvaluateError::Unmatched`] when no chain is the
-/// receptor's or none the ligand's; of a whole complex also [`EvaluateError::OneCopy`] and
-/// [`EvaluateError::NoContact`].
+/// [`EvaluateError::NoResidues`], [`EvaluateError::NotFinite`]; [`EvaluateError::UnknownChain`] for a choice of a chain
+/// that is not there; [`EvaluateError::Unmatched`] when no chain is the receptor's or none the ligand's; of a whole
+/// complex also [`EvaluateError::OneCopy`] and [`EvaluateError::NoContact`].
 pub(super) fn ways(
     receptor: &Residues,
     ligand: &Residues,
     native: Native,
+    choice: &ChainChoice,
 ) -> Result<Ways, EvaluateError> {
     match native {
         Native::Pair {
@@ -86,39 +87,51 @@ pub(super) fn ways(
             let groups = Groups {
                 receptor: Residues::of(native_receptor, "native receptor")?,
                 ligand: Residues::of(native_ligand, "native ligand")?,
-                unused: Vec::new(),
             };
-            of_pair(receptor, ligand, groups)
+            of_pair(receptor, ligand, groups, choice)
         }
-        Native::Complex(complex) => of_complex(receptor, ligand, &Residues::of(complex, "native")?),
+        Native::Complex(complex) => {
+            let complex = Residues::of(complex, "native")?;
+            of_complex(receptor, ligand, &complex, choice)
+        }
     }
 }
 
-fn of_pair(receptor: &Residues, ligand: &Residues, groups: Groups) -> Result<Ways, EvaluateError> {
-    let on_receptor = placed(receptor, &groups.receptor, "receptor")?;
-    let on_ligand = placed(ligand, &groups.ligand, "ligand")?;
+fn of_pair(
+    receptor: &Residues,
+    ligand: &Residues,
+    groups: Groups,
+    choice: &ChainChoice,
+) -> Result<Ways, EvaluateError> {
+    choice.check([receptor, ligand], &[&groups.receptor, &groups.ligand])?;
+    let on_receptor = placed(receptor, &groups.receptor, choice, "receptor")?;
+    let on_ligand = placed(ligand, &groups.ligand, choice, "ligand")?;
     let [ours, theirs] = [
         side(receptor, &groups.receptor, &on_receptor),
         side(ligand, &groups.ligand, &on_ligand),
     ];
     // Chains that are not matched may touch all the same, and what is matched of the interface is judged by another.
-    let all = combinations(ours, theirs, false).unwrap_or_else(|_| {
-        vec![Combination {
-            receptor: 0,
-            ligand: 0,
-            contacts: 0,
-        }]
-    });
-    let complexes = complexes(ours, theirs, &all);
-    let ways = alternatives(ours, theirs, all).into_iter().map(|one| Way {
+    let (measured, set_aside) = match combinations(ours, theirs, false, choice.named) {
+        Ok(found) => (found.measured, found.set_aside),
+        Err(_) => {
+            let first = Combination {
+                receptor: 0,
+                ligand: 0,
+                contacts: 0,
+            };
+            (vec![first], Vec::new())
+        }
+    };
+    let ways = measured.iter().map(|one| Way {
         groups: 0,
         receptor: on_receptor[one.receptor].clone(),
         ligand: on_ligand[one.ligand].clone(),
     });
     Ok(Ways {
         ways: ways.collect(),
-        complexes,
+        complexes: complexes(ours, theirs, measured.iter().chain(&set_aside)),
         groups: vec![groups],
+        unused: Vec::new(),
     })
 }
 
@@ -126,33 +139,25 @@ fn of_complex(
     receptor: &Residues,
     ligand: &Residues,
     complex: &Residues,
+    choice: &ChainChoice,
 ) -> Result<Ways, EvaluateError> {
-    let on_receptor = placed(receptor, complex, "receptor")?;
-    let on_ligand = placed(ligand, complex, "ligand")?;
+    choice.check([receptor, ligand], &[complex])?;
+    let on_receptor = placed(receptor, complex, choice, "receptor")?;
+    let on_ligand = placed(ligand, complex, choice, "ligand")?;
     let [ours, theirs] = [
         side(receptor, complex, &on_receptor),
         side(ligand, complex, &on_ligand),
     ];
-    let mut all = combinations(ours, theirs, true).map_err(|reason| match reason {
+    let all = combinations(ours, theirs, true, choice.named).map_err(|reason| match reason {
         Uncombined::OneCopy => EvaluateError::OneCopy,
         Uncombined::NoContact => EvaluateError::NoContact,
     })?;
     let mut found = Ways {
-        complexes: complexes(ours, theirs, &all),
+        complexes: complexes(ours, theirs, all.measured.iter().chain(&all.set_aside)),
         ..Ways::default()
     };
-    let chains = |one: &Combination| {
-        let mut chains = on_receptor[one.receptor].native_segments();
-        chains.extend(on_ligand[one.ligand].native_segments());
-        chains.sort_unstable();
-        chains.dedup();
-        chains
-    };
-    if let Some(taken) = all.first().map(chains) {
-        all.retain(|one| chains(one) == taken);
-    }
     let mut splits: Vec<[Part; 2]> = Vec::new();
-    for one in alternatives(ours, theirs, all) {
+    for one in all.measured {
         let (r, l) = (&on_receptor[one.receptor], &on_ligand[one.ligand]);
         let split = split(complex, r, l);
         let groups = match splits.iter().position(|known| *known == split) {
@@ -161,7 +166,6 @@ fn of_complex(
                 found.groups.push(Groups {
                     receptor: complex.only(&split[0]),
                     ligand: complex.only(&split[1]),
-                    unused: unused(complex, &split),
                 });
                 splits.push(split.clone());
                 splits.len() - 1
@@ -173,6 +177,7 @@ fn of_complex(
             ligand: in_group(l, &split[1]),
         });
     }
+    found.unused = unused(complex, &splits);
     Ok(found)
 }
 
@@ -188,13 +193,16 @@ fn side<'a>(
     }
 }
 
-/// The placements of one side, at least one that matches enough of it.
+/// The placements of one side whose sequences match, at least one that matches enough of it.
 fn placed(
     user: &Residues,
     native: &Residues,
+    choice: &ChainChoice,
     side: &'static str,
 ) -> Result<Vec<Placement>, EvaluateError> {
-    let found = placements(user, native);
+    let mut found = placements(user, native, choice);
+    let best = found.iter().map(Placement::identity).fold(0.0, f64::max);
+    found.retain(|placement| placement.identity() >= MIN_IDENTITY_OF_BEST * best);
     match found.iter().map(Placement::matched).max() {
         None => Err(EvaluateError::Unmatched { side }),
         Some(matched) => {
@@ -220,42 +228,12 @@ pub(super) fn check_docked_share(
     Ok(())
 }
 
-/// The first of the combinations and those that match nearly as much, in the order given; of each side at most [`MOST`]
-/// placements, those that fit best.
-fn alternatives(
+/// The complexes among the combinations, by the names of their chains, in the order given.
+fn complexes<'a>(
     receptor: PlacedCopy,
     ligand: PlacedCopy,
-    mut all: Vec<Combination>,
-) -> Vec<Combination> {
-    let matched = |one: &Combination| {
-        receptor.placements[one.receptor].matched() + ligand.placements[one.ligand].matched()
-    };
-    let Some(first) = all.first().copied() else {
-        return all;
-    };
-    let least = MIN_OF_FIRST * matched(&first) as f64;
-    all.retain(|one| matched(one) as f64 >= least);
-    let best = |side: PlacedCopy, taken: usize, of: &dyn Fn(&Combination) -> usize| -> Vec<usize> {
-        let mut placements: Vec<usize> = all.iter().map(of).filter(|&one| one != taken).collect();
-        placements.sort_unstable();
-        placements.dedup();
-        placements.sort_by(|&a, &b| {
-            let rmsd = |placement: usize| side.placements[placement].rmsd;
-            rmsd(a).total_cmp(&rmsd(b))
-        });
-        std::iter::once(taken)
-            .chain(placements)
-            .take(MOST)
-            .collect()
-    };
-    let receptors = best(receptor, first.receptor, &|one| one.receptor);
-    let ligands = best(ligand, first.ligand, &|one| one.ligand);
-    all.retain(|one| receptors.contains(&one.receptor) && ligands.contains(&one.ligand));
-    all
-}
-
-/// The complexes among the combinations, by the names of their chains, in the order given.
-fn complexes(receptor: PlacedCopy, ligand: PlacedCopy, all: &[Combination]) -> Vec<NativeComplex> {
+    all: impl Iterator<Item = &'a Combination>,
+) -> Vec<NativeComplex> {
     let mut found: Vec<NativeComplex> = Vec::new();
     for one in all {
         let names = |side: PlacedCopy, placement: usize| -> Vec<String> {
@@ -274,7 +252,7 @@ fn complexes(receptor: PlacedCopy, ligand: PlacedCopy, all: &[Combination]) -> V
             (&known.receptor, &known.ligand) == (&next.receptor, &next.ligand)
                 || (&known.receptor, &known.ligand) == (&next.ligand, &next.receptor)
         };
-        if found.len() < MOST && !found.iter().any(is_known) {
+        if found.len() < MOST_LISTED && !found.iter().any(is_known) {
             found.push(next);
         }
     }
@@ -319,8 +297,9 @@ fn nearest(rising: &[usize], number: usize) -> usize {
     distances.min().unwrap_or(usize::MAX)
 }
 
-fn unused(complex: &Residues, split: &[Part; 2]) -> Vec<String> {
-    let is_used = |index: usize| split.iter().flatten().any(|(segment, _)| *segment == index);
+fn unused(complex: &Residues, splits: &[[Part; 2]]) -> Vec<String> {
+    let parts = || splits.iter().flatten().flatten();
+    let is_used = |index: usize| parts().any(|(segment, _)| *segment == index);
     let segments = complex.segments.iter().enumerate();
     segments
         .filter(|&(index, _)| !is_used(index))

@@ -2,8 +2,9 @@
 
 use serde::Serialize;
 
-use super::residues::Residues;
+use super::residues::{Residues, chain_of};
 use crate::evaluate::matching::chain_pair::ChainPair;
+use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 
 /// Share of a docked side's residues below which the match is worth a warning.
 const GOOD_DOCKED_SHARE: f64 = 0.7;
@@ -33,6 +34,17 @@ pub struct ChainMatch {
     pub matched: usize,
     /// Equal residues as a share, 0 to 1, of all aligned ones.
     pub identity: f64,
+}
+
+impl ChainMatch {
+    /// Names of both chains as their files have them, `_` for an empty one.
+    pub(super) fn names(&self) -> (&str, &str) {
+        let plain = |name| match chain_of(name) {
+            "" => "_",
+            chain => chain,
+        };
+        (plain(&self.chain), plain(&self.native_chain))
+    }
 }
 
 /// The match of one side.
@@ -90,15 +102,18 @@ pub struct MatchReport {
     pub native_contacts_matched: usize,
     /// The side that is the ligand in `lrmsd`, `dockq` and `capri`: the one of fewer residues, as in DockQ.
     pub dockq_ligand: &'static str,
-    /// Ways of matching identical chains; every pose is given the best of them by `dockq`. This report is of the first.
+    /// The chains matched, as `DOCKED:NATIVE,DOCKED:NATIVE`.
+    pub native_chains: String,
+    /// Ways of assigning the native's chains to the docked ones; every pose is given the best of them by `dockq`. This
+    /// report is of one of them: of the first, unless a pose is named.
     pub permutations: usize,
-    /// Chains of a native complex that belong to neither side.
+    /// Chains of a native complex to which no docked chain is assigned.
     pub unused_native_chains: Vec<String>,
-    /// The complexes that the native holds, at most 24: the one that poses are measured by, then the others by
-    /// contacts.
+    /// The complexes that the native holds, at most 24: those of equal chain names first, then those of most contacts.
+    /// Crystal contacts of a few residues, by which no pose is measured, come last.
     pub complexes: Vec<NativeComplex>,
     /// What the user should know before trusting the figures: a docked side of which less than 70% is matched, or whose
-    /// backbone lies more than 5 Å RMSD from the native's.
+    /// backbone lies more than 5 Å RMSD from the native's. Beyond 15 Å the class of every pose is `incorrect`.
     pub warnings: Vec<String>,
 }
 
@@ -115,7 +130,14 @@ impl MatchReport {
                     100.0 * side.docked_share
                 ));
             }
-            if side.backbone_rmsd > GOOD_FIT {
+            if side.backbone_rmsd > MAX_FIT_RMSD {
+                warnings.push(format!(
+                    "the docked {name} does not fit the native: its backbone lies {:.1} Å RMSD from it, more than \
+                     {MAX_FIT_RMSD:.0} Å, so every pose counts as incorrect; name native chains that belong together, \
+                     as in --native FILE:A,B, or dock parts that move apart",
+                    side.backbone_rmsd
+                ));
+            } else if side.backbone_rmsd > GOOD_FIT {
                 warnings.push(format!(
                     "the docked {name} has another shape than the native's: its backbone lies {:.1} Å RMSD from it",
                     side.backbone_rmsd

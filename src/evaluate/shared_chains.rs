@@ -89,13 +89,8 @@ fn equal_residues(one: &[&Residue], other: &[&Residue]) -> usize {
     if equal as f64 >= least { equal } else { 0 }
 }
 
-/// A segment's chain name; further segments of one name carry a number behind it.
 fn name(residues: &Residues, segment: usize) -> String {
-    let name = &residues.segments[segment].name;
-    match name.rsplit_once('/') {
-        Some((chain, piece)) if piece.bytes().all(|byte| byte.is_ascii_digit()) => chain.to_owned(),
-        _ => name.clone(),
-    }
+    residues.segments[segment].chain().to_owned()
 }
 
 #[cfg(test)]

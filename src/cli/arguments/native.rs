@@ -2,7 +2,9 @@
 
 use std::path::Path;
 
-use crate::evaluate::{Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch};
+use crate::evaluate::{
+    ChainChoice, Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch,
+};
 use crate::output::records::input_record::NativeRecord;
 use crate::output::tables::poses::PoseRow;
 use crate::output::tables::report::counted;
@@ -19,7 +21,7 @@ use crate::cli::messages::failure::Failure;
 pub struct NativeArguments {
     /// Known complex, against which poses are measured.
     ///
-    /// One file has both partners. Of several copies the one with the largest interface is taken; FILE:A,B picks
+    /// One file has both partners. Of several copies each pose is measured by the one with its best DockQ; FILE:A,B picks
     /// chains.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = HEADING)]
     #[arg(conflicts_with_all = ["native_receptor", "native_ligand"])]
@@ -106,6 +108,20 @@ impl NativeFiles {
 
     /// Matches the complex with the molecules docked.
     pub fn evaluator(&self, receptor: &Molecule, ligand: &Molecule) -> Result<Evaluator, Failure> {
+        self.evaluator_by(receptor, ligand, &ChainChoice::default())
+    }
+
+    /// Matches the complex with the molecules docked, by chains that the user chooses.
+    pub fn evaluator_by(
+        &self,
+        receptor: &Molecule,
+        ligand: &Molecule,
+        choice: &ChainChoice,
+    ) -> Result<Evaluator, Failure> {
+        let choice = ChainChoice {
+            named: choice.named || self.inputs().any(|input| input.record.chains.is_some()),
+            ..choice.clone()
+        };
         let (native, file) = match self {
             Self::Complex(complex) => (Native::Complex(&complex.molecule), complex.as_ref()),
             Self::Partners {
@@ -119,17 +135,28 @@ impl NativeFiles {
                 native_receptor.as_ref(),
             ),
         };
-        Evaluator::new(receptor, ligand, native).map_err(|error| {
+        Evaluator::with_chains(receptor, ligand, native, &choice).map_err(|error| {
             let mut message = error.to_string();
-            for input in self.inputs() {
-                for note in reading_notes(&input.molecule) {
-                    message += &format!("; {note}");
-                }
+            for note in self.notes() {
+                message += &format!("; {note}");
             }
             Failure::input(message)
                 .at(&file.record.path)
                 .remedy(error.remedy())
         })
+    }
+
+    /// What reading the files left out or warned of.
+    fn notes(&self) -> impl Iterator<Item = String> {
+        self.inputs()
+            .flat_map(|input| reading_notes(&input.molecule))
+    }
+
+    /// Warns of what reading the files left out.
+    pub fn warn(&self, console: Console) {
+        for note in self.notes() {
+            console.warn(note);
+        }
     }
 }
 
@@ -153,10 +180,13 @@ fn reading_notes(molecule: &Molecule) -> Vec<String> {
         .collect()
 }
 
-/// Every pose's quality.
-pub fn measure(evaluator: &Evaluator, rows: &[PoseRow]) -> Vec<PoseQuality> {
+/// Every pose's quality, with the report of how it is matched.
+pub fn measure<'a>(
+    evaluator: &'a Evaluator,
+    rows: &[PoseRow],
+) -> Vec<(PoseQuality, &'a MatchReport)> {
     rows.par_iter()
-        .map(|row| evaluator.evaluate(&row.pose))
+        .map(|row| evaluator.best(&row.pose))
         .collect()
 }
 
@@ -176,12 +206,8 @@ pub fn announce(evaluator: &Evaluator, console: Console) {
 fn brief_match_text(report: &MatchReport) -> String {
     let share = 100.0 * report.interface_share;
     let mut text = format!("Known complex: {share:.0}% of its interface is in what is docked");
-    if let [taken, _, ..] = report.complexes.as_slice() {
-        text += &format!(
-            "; of its {} copies {} is taken",
-            report.complexes.len(),
-            complex_text(taken)
-        );
+    if let Some(others) = others_text(report) {
+        text += &format!("; {others}");
     }
     if !report.unused_native_chains.is_empty() {
         let chains = report.unused_native_chains.join(", ");
@@ -198,21 +224,8 @@ fn match_text(report: &MatchReport) -> String {
         side_text("receptor", &report.receptor),
         side_text("ligand", &report.ligand)
     );
-    if let [taken, others @ ..] = report.complexes.as_slice()
-        && !others.is_empty()
-    {
-        let shown: Vec<String> = others.iter().take(OTHERS_SHOWN).map(complex_text).collect();
-        text += &format!(
-            "\n  taken of {} complexes in the native: {}; not taken: {}{}",
-            report.complexes.len(),
-            complex_text(taken),
-            shown.join(", "),
-            if others.len() > OTHERS_SHOWN {
-                ", ..."
-            } else {
-                ""
-            }
-        );
+    if let Some(others) = others_text(report) {
+        text += &format!("\n  {others}");
     }
     if !report.unused_native_chains.is_empty() {
         text += &format!(
@@ -223,8 +236,31 @@ fn match_text(report: &MatchReport) -> String {
     text
 }
 
-/// Complexes that are shown beside the one taken.
-const OTHERS_SHOWN: usize = 3;
+/// Complexes that are shown.
+const COMPLEXES_SHOWN: usize = 4;
+
+/// The complexes of a native that holds several, and how one is chosen.
+pub fn others_text(report: &MatchReport) -> Option<String> {
+    let complexes = &report.complexes;
+    if complexes.len() < 2 {
+        return None;
+    }
+    let shown = complexes.iter().take(COMPLEXES_SHOWN).map(complex_text);
+    let shown = shown.collect::<Vec<_>>().join(", ");
+    let more = if complexes.len() > COMPLEXES_SHOWN {
+        ", ..."
+    } else {
+        ""
+    };
+    let by = match report.permutations {
+        1 => format!("measured by {}", complex_text(&complexes[0])),
+        _ => "each pose is measured by the one with its best DockQ".to_owned(),
+    };
+    Some(format!(
+        "the native holds {} complexes of these chains ({shown}{more}); {by}",
+        complexes.len()
+    ))
+}
 
 fn complex_text(complex: &NativeComplex) -> String {
     format!(

@@ -2,19 +2,17 @@
 
 use std::path::PathBuf;
 
-use crate::evaluate::PoseQuality;
-use crate::options::InputOptions;
+use crate::evaluate::ChainChoice;
 use crate::output::files::whole_file::write_whole;
 use crate::output::tables::complexes::{EvaluatedComplex, write_complexes};
-use crate::output::tables::poses::PoseRow;
 use crate::output::tables::report::align;
 use knotdock_scoring::se3::Pose;
 use serde_json::json;
 
 use super::Evaluate;
-use crate::cli::arguments::native::{NativeFiles, measure};
+use crate::cli::arguments::native::{NativeFiles, others_text};
 use crate::cli::arguments::output_file::check_output;
-use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_file};
+use crate::cli::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_model};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
@@ -38,9 +36,24 @@ impl Evaluate {
             let read = complexes.iter().map(PathBuf::as_path).chain(natives);
             check_output(path, read, self.force)?;
         }
-        let (rows, code) = for_each_file(files, console, |file| {
-            evaluated(file, chains.as_ref(), &native, &self.input)
+        native.warn(console);
+        let choice = self.chain_choice(chains.is_some());
+        let files = (files, chains.as_ref());
+        let reading = self.input.reading();
+        let (found, code) = for_each_model(files, &reading, console, |file, sides| {
+            evaluated(file, sides, &native, &choice)
         })?;
+        let mut noted = Vec::new();
+        let mut rows = Vec::new();
+        for (row, notes) in found {
+            for note in notes {
+                if !noted.contains(&note) {
+                    console.warn(&note);
+                    noted.push(note);
+                }
+            }
+            rows.push(row);
+        }
         if let Some(path) = &self.output {
             write_whole(path, |file| write_complexes(&rows, file))?;
         }
@@ -51,41 +64,46 @@ impl Evaluate {
     }
 }
 
-/// How near a file is to the known complex: its sides where they stand.
+/// How near a model of a file is to the known complex, its sides where they stand; and what to know of the match.
 fn evaluated(
     file: &str,
-    chains: Option<&[String; 2]>,
+    sides: ComplexSides,
     native: &NativeFiles,
-    input: &InputOptions,
-) -> Result<EvaluatedComplex, Failure> {
-    let sides = ComplexSides::read(file, chains, &input.reading())?;
+    choice: &ChainChoice,
+) -> Result<(EvaluatedComplex, Vec<String>), Failure> {
     let [receptor, ligand] = &sides.molecules;
-    let evaluator = native.evaluator(receptor, ligand)?;
-    let in_place = PoseRow {
-        rank: 1,
-        pose: Pose::identity(),
-    };
-    let quality: Option<PoseQuality> = measure(&evaluator, &[in_place]).pop();
-    let quality = quality.ok_or_else(|| Failure::other("a pose has no quality"))?;
-    Ok(EvaluatedComplex {
-        file: file.to_owned(),
-        chains: sides.chains,
-        matched: evaluator.report().interface_share,
-        quality,
-    })
+    let evaluator = native.evaluator_by(receptor, ligand, choice)?;
+    let (quality, report) = evaluator.best(&Pose::identity());
+    let warnings = report.warnings.iter();
+    let notes = warnings.map(|warning| format!("{file}: {warning}"));
+    let others = others_text(report).map(|others| format!("{others}; --map chooses"));
+    Ok((
+        EvaluatedComplex {
+            file: file.to_owned(),
+            model: sides.model,
+            chains: sides.chains,
+            native_chains: report.native_chains.clone(),
+            fits: [report.receptor.backbone_rmsd, report.ligand.backbone_rmsd],
+            matched: report.interface_share,
+            quality,
+        },
+        notes.chain(others).collect(),
+    ))
 }
 
 /// Many complexes as a table.
 fn listing(rows: &[EvaluatedComplex]) -> String {
     let header = [
-        "file", "chains", "irmsd", "lrmsd", "fnat", "dockq", "capri", "matched",
+        "file", "model", "chains", "native", "irmsd", "lrmsd", "fnat", "dockq", "capri", "matched",
     ];
     let mut lines = vec![header.map(str::to_owned).to_vec()];
     lines.extend(rows.iter().map(|row| {
         let quality = &row.quality;
         vec![
             row.file.clone(),
+            row.model.to_string(),
             row.chains.join(" "),
+            row.native_chains.clone(),
             format!("{:.2}", quality.irmsd),
             format!("{:.2}", quality.lrmsd),
             format!("{:.3}", quality.fnat),

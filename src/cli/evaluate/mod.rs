@@ -4,10 +4,11 @@ mod complexes;
 
 use std::path::{Path, PathBuf};
 
-use crate::evaluate::{Capri, Evaluator, PoseQuality};
+use crate::evaluate::{Capri, ChainChoice, Evaluator, PoseQuality};
 use crate::options::{InputOptions, Threads, definitions};
 use crate::output::records::ensemble_record::is_ensemble;
 use crate::output::records::recorded_run::RecordedRun;
+use crate::output::tables::fields::Column;
 use crate::output::tables::poses::{PoseRow, PoseTable};
 use crate::output::tables::{quality, report};
 use crate::threads;
@@ -31,7 +32,7 @@ pub struct Evaluate {
     /// The directory of a run, a table of poses, or complex files and optionally the chains of both sides.
     ///
     /// A table has the columns rank, qw, qx, qy, qz, tx, ty and tz. Complex files are .pdb, .ent or .cif, each also
-    /// .gz. Chains come last, such as H,L A.
+    /// .gz; every model of a file is measured. Chains come last, such as H,L A.
     #[arg(value_name = "INPUT", required = true)]
     words: Vec<String>,
     /// The receptor that was docked; FILE:H,L picks chains [default: that of the run, read as the run read it].
@@ -44,6 +45,11 @@ pub struct Evaluate {
     input: InputOptions,
     #[command(flatten)]
     native: NativeArguments,
+    /// Chains with those of the known complex that they are measured against, as DOCKED:NATIVE, such as A:E,B:F.
+    ///
+    /// By default every assignment that the sequences allow is tried, and the one with the best DockQ is taken.
+    #[arg(long, value_name = "CHAINS", value_delimiter = ',', value_parser = chain_pair, help_heading = "Known complex")]
+    map: Vec<(String, String)>,
     /// Write the table with the columns irmsd, lrmsd, fnat, dockq and capri to this file.
     #[arg(short, long, value_name = "FILE", help_heading = OUTPUT)]
     output: Option<PathBuf>,
@@ -75,6 +81,14 @@ impl Evaluate {
         })?
     }
 
+    /// The chains that the user chooses, by --map or, if `named`, by the names of those to measure.
+    fn chain_choice(&self, named: bool) -> ChainChoice {
+        ChainChoice {
+            map: self.map.clone(),
+            named: named || !self.map.is_empty(),
+        }
+    }
+
     /// Evaluates the poses of a run or a table.
     fn evaluate(&self, poses: &Path, console: Console) -> Result<(), Failure> {
         let table_path = match poses.is_dir() {
@@ -95,22 +109,31 @@ impl Evaluate {
             .at(directory)
             .remedy("leave them out, or name the run of a member: a folder in members/"));
         }
-        let mut qualities: Vec<Option<PoseQuality>> = vec![None; places.len()];
+        let mut qualities: Vec<Option<(PoseQuality, String)>> = vec![None; places.len()];
         let mut matches = Vec::new();
         for RunRows { run, rows } in runs(directory, &table, &places)? {
             let evaluator = self.evaluator(&run)?;
             announce(&evaluator, console);
             let poses: Vec<PoseRow> = rows.iter().map(|&row| table.rows()[row]).collect();
-            for (row, quality) in rows.into_iter().zip(measure(&evaluator, &poses)) {
-                qualities[row] = Some(quality);
+            for (row, (quality, report)) in rows.into_iter().zip(measure(&evaluator, &poses)) {
+                qualities[row] = Some((quality, report.native_chains.clone()));
             }
             matches.push(serde_json::to_value(evaluator.report()).map_err(Failure::other)?);
         }
         // Each row is of one run.
-        let qualities: Vec<PoseQuality> = qualities.into_iter().flatten().collect();
+        let (qualities, native_chains): (Vec<PoseQuality>, Vec<String>) =
+            qualities.into_iter().flatten().unzip();
         assert_eq!(qualities.len(), places.len(), "rows that belong to no run");
         if let Some(path) = &self.output {
-            for column in quality::columns(&qualities) {
+            let measured: Vec<_> = qualities.iter().copied().map(Some).collect();
+            let native_chains = Column {
+                name: "native_chains".to_owned(),
+                fields: native_chains.clone(),
+            };
+            for column in quality::columns(&measured)
+                .into_iter()
+                .chain([native_chains])
+            {
                 table.set_column(&column);
             }
             table.write(path)?;
@@ -131,11 +154,17 @@ impl Evaluate {
                 ));
             }
         }
-        let poses = table.rows().iter().zip(&qualities).map(|(row, quality)| {
-            let mut object = Map::from_iter([("rank".to_owned(), json!(row.rank))]);
-            object.extend(quality::object(quality));
-            Value::Object(object)
-        });
+        let measured = qualities.iter().zip(&native_chains);
+        let poses = table
+            .rows()
+            .iter()
+            .zip(measured)
+            .map(|(row, (quality, chains))| {
+                let mut object = Map::from_iter([("rank".to_owned(), json!(row.rank))]);
+                object.extend(quality::object(quality));
+                object.insert("native_chains".to_owned(), json!(chains));
+                Value::Object(object)
+            });
         let matched = match matches.len() {
             1 => matches.remove(0),
             _ => matches.into(),
@@ -152,7 +181,8 @@ impl Evaluate {
             let read = structures.map(|input| input.record.path.as_path());
             check_output(file, read.chain([run_path]), self.force)?;
         }
-        native.evaluator(&receptor.molecule, &ligand.molecule)
+        let choice = self.chain_choice(false);
+        native.evaluator_by(&receptor.molecule, &ligand.molecule, &choice)
     }
 
     /// The molecules docked and the known complex: those named, or else those of the run.
@@ -227,6 +257,17 @@ fn listing(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
         ]
     }));
     report::align(&lines)
+}
+
+/// A docked chain with a native one, as `A:E`; `_` is the chain without a name.
+fn chain_pair(text: &str) -> Result<(String, String), String> {
+    let named = |name: &str| if name == "_" { "" } else { name }.to_owned();
+    match text.split(':').collect::<Vec<_>>().as_slice() {
+        [docked, native] if !docked.is_empty() && !native.is_empty() => {
+            Ok((named(docked), named(native)))
+        }
+        _ => Err("a docked chain and a native one are needed, such as A:E".to_owned()),
+    }
 }
 
 /// Whether a word names a complex file.

@@ -1,18 +1,22 @@
 //! The two sides of a complex file: as named, as knotdock wrote them, or the two chains that there are.
 
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
-use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, file_bytes, read_bytes};
+use knotdock_structures::molecule::{
+    InputSpec, ModelChoice, Molecule, ReadOptions, file_bytes, model_count, read_bytes,
+};
 
 use rayon::prelude::*;
 
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
-/// A complex as two molecules where they stand.
+/// A model of a complex file as two molecules where they stand.
 pub struct ComplexSides {
     /// The file.
     pub path: PathBuf,
+    /// Place of the model in the file, from 1.
+    pub model: usize,
     /// Chains of each side, with commas between them.
     pub chains: [String; 2],
     /// The sides.
@@ -20,36 +24,88 @@ pub struct ComplexSides {
 }
 
 impl ComplexSides {
-    /// Reads a file, with the chains of both sides or without.
+    /// Reads a model of a file, with the chains of both sides or without.
     ///
     /// # Errors
     /// [`Failure`] for a file that cannot be read, and for one that does not say which chains belong together.
-    pub fn read(
-        file: &str,
+    fn read(
+        file: &ModelOfFile,
         chains: Option<&[String; 2]>,
         options: &ReadOptions,
     ) -> Result<Self, Failure> {
-        let path = PathBuf::from(file);
-        let bytes = file_bytes(&path)?;
+        let whole = InputSpec {
+            model: file.one_of_several.then_some(file.model),
+            ..InputSpec::whole(file.path)
+        };
         let chains = match chains {
             Some(chains) => chains.clone(),
-            None => match written_sides(&String::from_utf8_lossy(&bytes)) {
+            None => match written_sides(&String::from_utf8_lossy(file.bytes)) {
                 Some(chains) => chains,
-                None => two_chains(&path, bytes.clone(), options)?,
+                None => two_chains(&whole, file.bytes.to_vec(), options)?,
             },
         };
         let side = |names: &String| -> Result<Molecule, Failure> {
             let spec = InputSpec {
                 chains: Some(names.split(',').map(str::to_owned).collect()),
-                ..InputSpec::whole(&path)
+                ..whole.clone()
             };
-            Ok(read_bytes(&spec, bytes.clone(), options)?)
+            Ok(read_bytes(&spec, file.bytes.to_vec(), options)?)
         };
         let molecules = [side(&chains[0])?, side(&chains[1])?];
         Ok(Self {
-            path,
+            path: whole.path,
+            model: file.model,
             chains,
             molecules,
+        })
+    }
+
+    /// Warnings of the reader on both sides, each once.
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings: Vec<String> = Vec::new();
+        for warning in self.molecules.iter().flat_map(|one| &one.report.warnings) {
+            let warning = format!("{}: {warning}", self.path.display());
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
+        warnings
+    }
+}
+
+/// A model of a file.
+struct ModelOfFile<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+    /// Its place in the file, from 1.
+    model: usize,
+    /// Whether it is read by that place; otherwise the options of reading say what is read.
+    one_of_several: bool,
+}
+
+/// A file with its bytes, unpacked once, and the models that are read of it one by one.
+struct ModelFile {
+    path: PathBuf,
+    bytes: Vec<u8>,
+    models: Vec<usize>,
+}
+
+impl ModelFile {
+    /// Reads a file. Of several models every one counts, unless the options of reading choose.
+    fn read(file: &str, options: &ReadOptions) -> Result<Self, Failure> {
+        let path = PathBuf::from(file);
+        let bytes = file_bytes(&path)?;
+        let models = match options.model {
+            choice if choice == ModelChoice::default() => {
+                (1..=model_count(&path, bytes.clone())?).collect()
+            }
+            ModelChoice::Number(model) => vec![model],
+            ModelChoice::All => vec![1],
+        };
+        Ok(Self {
+            path,
+            bytes,
+            models,
         })
     }
 }
@@ -88,22 +144,58 @@ pub fn files_and_chains<'a>(
     Ok((files, chains))
 }
 
-/// What is made of each file, in their order, and the exit code. A file of which nothing can be made is reported and costs
-/// no other.
+/// What is made of each model of each file, in their order, and the exit code. Warnings of the reader are shown. A model
+/// of which nothing can be made is reported and costs no other.
 ///
 /// # Errors
-/// The [`Failure`] of a file that is the only one.
-pub fn for_each_file<T: Send>(
-    files: &[String],
+/// The [`Failure`] of a model that is the only one.
+pub fn for_each_model<T: Send>(
+    (files, chains): (&[String], Option<&[String; 2]>),
+    options: &ReadOptions,
     console: Console,
-    make: impl Fn(&str) -> Result<T, Failure> + Sync,
+    make: impl Fn(&str, ComplexSides) -> Result<T, Failure> + Sync,
 ) -> Result<(Vec<T>, u8), Failure> {
-    let made: Vec<Result<T, Failure>> = files.par_iter().map(|file| make(file)).collect();
-    let (mut rows, mut code) = (Vec::new(), 0);
-    for one in made {
+    type Made<T> = (Vec<String>, Result<T, Failure>);
+    let of_model = |name: &str, file: &ModelFile, model: usize| -> Made<T> {
+        let one_of_several = file.models.len() > 1;
+        let place = ModelOfFile {
+            path: &file.path,
+            bytes: &file.bytes,
+            model,
+            one_of_several,
+        };
+        let (warnings, made) = match ComplexSides::read(&place, chains, options) {
+            Ok(sides) => (sides.warnings(), make(name, sides)),
+            Err(failure) => (Vec::new(), Err(failure)),
+        };
+        let made = made.map_err(|failure| match one_of_several {
+            true => failure.in_model(model),
+            false => failure,
+        });
+        (warnings, made)
+    };
+    let of_file = |name: &String| -> Vec<Made<T>> {
+        match ModelFile::read(name, options) {
+            Ok(file) => {
+                let models = file.models.par_iter();
+                models.map(|&model| of_model(name, &file, model)).collect()
+            }
+            Err(failure) => vec![(Vec::new(), Err(failure))],
+        }
+    };
+    let made: Vec<Vec<Made<T>>> = files.par_iter().map(of_file).collect();
+    let is_only = made.iter().map(Vec::len).sum::<usize>() == 1;
+    let (mut rows, mut code, mut warned) = (Vec::new(), 0, Vec::new());
+    for (warnings, one) in made.into_iter().flatten() {
+        for warning in warnings {
+            if !warned.contains(&warning) {
+                console.warn(&warning);
+                warned.push(warning);
+            }
+        }
         match one {
             Ok(row) => rows.push(row),
-            Err(failure) if files.len() == 1 => return Err(failure),
+            Err(failure) if is_only => return Err(failure),
             Err(failure) => {
                 console.error(failure.text());
                 code = code.max(failure.exit_code());
@@ -142,11 +234,11 @@ fn written_sides(text: &str) -> Option<[String; 2]> {
 
 /// The chains of a file that has two.
 fn two_chains(
-    path: &PathBuf,
+    whole: &InputSpec,
     bytes: Vec<u8>,
     options: &ReadOptions,
 ) -> Result<[String; 2], Failure> {
-    let molecule = read_bytes(&InputSpec::whole(path), bytes, options)?;
+    let molecule = read_bytes(whole, bytes, options)?;
     let chains = molecule.report.chains.iter();
     let names: Vec<String> = chains
         .map(|chain| match chain.name.as_str() {
@@ -159,7 +251,7 @@ fn two_chains(
             "it is not known which chains belong together; the file has {}",
             names.join(", ")
         ))
-        .at(path)
+        .at(&whole.path)
         .remedy("name the chains of both sides behind the files, as in `knotdock interface x.pdb H,L A`")
     })
 }

@@ -10,8 +10,9 @@ use crate::output::records::manifest::Inputs;
 use crate::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
 use crate::output::records::recorded_run::RecordedRun;
 use crate::pose_space::arrangement::Arrangement;
+use serde_json::{Value, json};
 
-use crate::cli::arguments::native::NativeFiles;
+use crate::cli::arguments::native::{NativeFiles, announce};
 use crate::cli::arguments::options::GivenOptions;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
@@ -27,6 +28,34 @@ pub fn lengths(given: &GivenOptions) -> (Option<f64>, GivenLengths) {
         alpha: given.has("alpha"),
     };
     (offset, lengths)
+}
+
+/// The known complex, as far as it matches the molecules docked.
+pub enum Known {
+    /// Poses can be measured.
+    Matched(Evaluator),
+    /// They cannot, for this reason.
+    Unmatched(String),
+}
+
+impl Known {
+    /// What measures poses, if they can be measured.
+    pub fn evaluator(&self) -> Option<&Evaluator> {
+        match self {
+            Self::Matched(evaluator) => Some(evaluator),
+            Self::Unmatched(_) => None,
+        }
+    }
+
+    /// The report on the match as JSON, or why there is none.
+    pub fn entry(&self) -> Result<Value, Failure> {
+        match self {
+            Self::Matched(evaluator) => {
+                serde_json::to_value(evaluator.report()).map_err(Failure::other)
+            }
+            Self::Unmatched(error) => Ok(json!({ "error": error })),
+        }
+    }
 }
 
 /// A requested run, by options or by a run.json.
@@ -113,13 +142,28 @@ impl Request {
         self.bodies.plan(&mut self.options, offset, given, console)
     }
 
-    /// Matches the known complex, if there is one, with the molecules.
-    pub fn evaluator(&self) -> Result<Option<Evaluator>, Failure> {
+    /// Matches the known complex, if there is one, with the molecules. One that does not match costs a warning, not the
+    /// docking.
+    pub fn known(&self, console: Console) -> Result<Option<Known>, Failure> {
         match (&self.native, &self.bodies) {
             (Some(native), Bodies::Molecules(inputs)) => {
                 let [receptor, ligand] = inputs.as_ref();
                 Ok(Some(
-                    native.evaluator(&receptor.molecule, &ligand.molecule)?,
+                    match native.evaluator(&receptor.molecule, &ligand.molecule) {
+                        Ok(evaluator) => {
+                            native.warn(console);
+                            announce(&evaluator, console);
+                            Known::Matched(evaluator)
+                        }
+                        Err(failure) => {
+                            console.warn(format!(
+                                "no pose is measured: {}; {}",
+                                failure.line_of_table(),
+                                "`knotdock evaluate` measures the run by another known complex"
+                            ));
+                            Known::Unmatched(failure.message().to_owned())
+                        }
+                    },
                 ))
             }
             (Some(_), Bodies::Meshes(_)) => Err(Failure::input(

@@ -117,6 +117,14 @@ impl Failure {
         }
     }
 
+    /// Names the model of the file in question.
+    pub fn in_model(self, model: usize) -> Self {
+        Self {
+            message: format!("model {model}: {}", self.message),
+            ..self
+        }
+    }
+
     /// What went wrong and where, in a line for a table.
     pub fn line_of_table(&self) -> String {
         let mut line = self.message.clone();

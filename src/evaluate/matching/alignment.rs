@@ -1,18 +1,26 @@
 //! Alignment of two chains: by residue number where the numbers agree, by sequence otherwise.
 //!
 //! The sequence alignment is Gotoh's (J. Mol. Biol. 162 (1982) 705-708, affine gaps, time and memory of the product
-//! of the lengths) with free ends. Two equal residues that also agree in number score a little more than two that do
-//! not. So the numbers decide where a gap could stand in several places alike: in a run of glycines, or at the edge
-//! of a missing loop.
+//! of the lengths) with free ends. Where a gap could stand in several places alike, in a run of glycines or at the edge
+//! of a missing loop, it stands where the chain that lacks the residues is broken. If nothing is broken there, numbers
+//! decide: those that agree, and those that leave some out. What then is left open is decided by the superposition
+//! ([`settle`]).
 
 use std::collections::HashMap;
 
+use nalgebra::Point3;
+
 use crate::evaluate::residues::residue::{Number, Residue};
+use crate::evaluate::residues::segments::{Step, step};
 
 const MATCH: f64 = 5.0;
 const MISMATCH: f64 = -2.0;
 /// Added to a match of equal numbers: less than any difference that the sequence itself makes.
 const SAME_NUMBER: f64 = 0.4;
+/// Added to a gap where the chain that lacks residues is broken, and where only its numbers leave some out: less than a
+/// match and more than numbers that agree by chance.
+const AT_BREAK: f64 = 2.5;
+const AT_NUMBER_STEP: f64 = 0.2;
 /// Opening costs more than one match gains, so that the residues of a free end are not scattered one by one over a
 /// long chain.
 const GAP_OPEN: f64 = -8.0;
@@ -111,7 +119,18 @@ fn best<const N: usize>(candidates: [(f64, State); N]) -> (f64, State) {
     winner
 }
 
+/// What a gap behind each residue of a chain scores, the chain being the one that lacks residues.
+fn gap_scores(chain: &[&Residue]) -> Vec<f64> {
+    let scores = chain.windows(2).map(|pair| match step(pair[0], pair[1]) {
+        Step::Joined => GAP_OPEN,
+        Step::Numbered => GAP_OPEN + AT_NUMBER_STEP,
+        Step::Broken => GAP_OPEN + AT_BREAK,
+    });
+    scores.chain([GAP_OPEN]).collect()
+}
+
 fn align_sequences(first: &[&Residue], second: &[&Residue]) -> Alignment {
+    let (open_first, open_second) = (gap_scores(first), gap_scores(second));
     let (rows, columns) = (first.len(), second.len());
     let mut traces = vec![[State::Start; 3]; rows * columns];
     let mut above = vec![Cell::EDGE; columns + 1];
@@ -141,13 +160,13 @@ fn align_sequences(first: &[&Residue], second: &[&Residue]) -> Alignment {
             ]);
             let up = above[column + 1];
             let (gap_first, from_first) = best([
-                (up.both + GAP_OPEN, State::Both),
+                (up.both + open_second[column], State::Both),
                 (up.first + GAP_EXTEND, State::First),
                 (up.second + GAP_OPEN, State::Second),
             ]);
             let left = current[column];
             let (gap_second, from_second) = best([
-                (left.both + GAP_OPEN, State::Both),
+                (left.both + open_first[row], State::Both),
                 (left.first + GAP_OPEN, State::First),
                 (left.second + GAP_EXTEND, State::Second),
             ]);
@@ -164,6 +183,74 @@ fn align_sequences(first: &[&Residue], second: &[&Residue]) -> Alignment {
         above = current;
     }
     trace_back(first, second, &traces, end)
+}
+
+/// Moves gaps that could stand elsewhere alike to where the superposed residues lie nearest each other.
+///
+/// `pairs` are places in the two chains, `place` is where the backbone of a residue of the first comes to lie, relative to
+/// one of the second: the distance in Å. Gaps at which numbers or bonds decide stay. Returns whether any moved.
+pub(in crate::evaluate) fn settle(
+    first: &[&Residue],
+    second: &[&Residue],
+    pairs: &mut [(usize, usize)],
+    moved: impl Fn(Point3<f64>) -> Point3<f64>,
+) -> bool {
+    let center = |residue: &Residue| residue.backbone.iter().flatten().next().copied();
+    let distance = |(i, j): (usize, usize)| {
+        let ends = center(first[i]).map(&moved).zip(center(second[j]));
+        ends.map_or(f64::INFINITY, |(x, y)| nalgebra::distance(&x, &y))
+    };
+    // Whether a gap behind one residue of a chain shows as little as one behind the next.
+    let alike = |chain: &[&Residue], at: usize, next: usize| {
+        let shown = |place: usize| chain.get(place + 1).map(|after| step(chain[place], after));
+        shown(at) == shown(next)
+    };
+    let mut any = false;
+    for at in 1..pairs.len() {
+        // A gap before pair `at` moves to the left as long as that brings residues nearer.
+        let (mut left, mut moved_left) = (at, false);
+        while left > 0 {
+            let ((i, j), (next_i, next_j)) = (pairs[left - 1], pairs[left]);
+            let new = match (next_i - i, next_j - j) {
+                (2.., 1) if alike_before(second, j, &alike) => (next_i - 1, j),
+                (1, 2..) if alike_before(first, i, &alike) => (i, next_j - 1),
+                _ => break,
+            };
+            let fits = first[new.0].kind == second[new.1].kind;
+            if !fits || distance(new) >= distance((i, j)) {
+                break;
+            }
+            pairs[left - 1] = new;
+            (left, moved_left) = (left - 1, true);
+        }
+        // If it did not, it may move to the right, pair by pair.
+        let mut right = at;
+        while !moved_left && right < pairs.len() {
+            let ((i, j), (next_i, next_j)) = (pairs[right - 1], pairs[right]);
+            let new = match (next_i - i, next_j - j) {
+                (2.., 1) if alike(second, j, next_j) => (i + 1, next_j),
+                (1, 2..) if alike(first, i, next_i) => (next_i, j + 1),
+                _ => break,
+            };
+            let fits = first[new.0].kind == second[new.1].kind;
+            if !fits || distance(new) >= distance((next_i, next_j)) {
+                break;
+            }
+            pairs[right] = new;
+            (right, any) = (right + 1, true);
+        }
+        any |= moved_left;
+    }
+    any
+}
+
+/// Whether a gap behind the residue at a place shows as little as one before it.
+fn alike_before(
+    chain: &[&Residue],
+    place: usize,
+    alike: &impl Fn(&[&Residue], usize, usize) -> bool,
+) -> bool {
+    place > 0 && alike(chain, place - 1, place)
 }
 
 fn trace_back(
@@ -247,6 +334,71 @@ mod tests {
         );
         assert_eq!(found[3], (4, 3));
         assert_eq!(found.len(), 12);
+    }
+
+    /// Found with a model numbered from 1 and a native that lacks the second of two glycines: the first was left out.
+    #[test]
+    fn a_gap_stands_where_the_chain_is_broken() {
+        let whole: Vec<i64> = (1..=9).collect();
+        let native = chain_of("A", "WYWGGCFYF", &(21..=29).collect::<Vec<_>>());
+        for missing in [24, 25] {
+            for numbers in [false, true] {
+                // Numbers that run on say nothing; the broken bond does.
+                let mut atoms = native.clone();
+                atoms.retain(|atom| atom.residue_number != missing);
+                for atom in atoms
+                    .iter_mut()
+                    .filter(|atom| !numbers && atom.residue_number > missing)
+                {
+                    atom.residue_number -= 1;
+                }
+                let read = |atoms| Residues::of(&molecule(atoms), "receptor").unwrap();
+                let (user, native) = (read(chain_of("A", "WYWGGCFYF", &whole)), read(atoms));
+                let found = align(
+                    &user.residues.iter().collect::<Vec<_>>(),
+                    &native.residues.iter().collect::<Vec<_>>(),
+                );
+                assert_eq!(found.pairs.len(), 8);
+                let kept = if missing == 24 { 4 } else { 3 };
+                assert_eq!(found.pairs[3], (kept, 3), "{missing} {numbers}");
+            }
+        }
+    }
+
+    /// Where neither numbers nor bonds say which of two is missing, the superposed chains do.
+    #[test]
+    fn the_superposition_decides_what_is_left_open() {
+        let read = |atoms| Residues::of(&molecule(atoms), "receptor").unwrap();
+        let user = read(chain_of("A", "WYWGGGCFYF", &(1..=10).collect::<Vec<_>>()));
+        for missing in 4..=6 {
+            let mut atoms = chain_of("A", "WYWGGGCFYF", &(1..=10).collect::<Vec<_>>());
+            // Alpha carbons alone, spread so that no step shows a bond.
+            atoms.retain(|atom| atom.residue_number != missing && atom.name == "CA");
+            let native = read(atoms);
+            let [ours, theirs] =
+                [&user, &native].map(|one| one.residues.iter().collect::<Vec<_>>());
+            for start in 4..=6 {
+                let mut pairs: Vec<(usize, usize)> =
+                    (0..10).filter(|&i| i + 1 != start).zip(0..).collect();
+                settle_all(&ours, &theirs, &mut pairs);
+                assert_eq!(
+                    pairs[missing as usize - 1].0,
+                    missing as usize,
+                    "{missing} {start}"
+                );
+                assert!(pairs[..missing as usize - 1].iter().all(|(i, j)| i == j));
+            }
+        }
+    }
+
+    fn settle_all(ours: &[&Residue], theirs: &[&Residue], pairs: &mut [(usize, usize)]) {
+        let mut numbered: Vec<Residue> = theirs.iter().map(|&one| one.clone()).collect();
+        for (place, residue) in numbered.iter_mut().enumerate() {
+            // Numbers and distances that show nothing.
+            residue.number = (3 * place as i64, None);
+        }
+        let theirs: Vec<&Residue> = numbered.iter().collect();
+        settle(ours, &theirs, pairs, |point| point);
     }
 
     #[test]

@@ -5,9 +5,13 @@
 
 use std::collections::HashMap;
 
-use crate::evaluate::matching::alignment::{Alignment, align};
-use crate::evaluate::residues::Residues;
+use knotdock_scoring::se3::Pose;
+use nalgebra::Point3;
+
+use crate::evaluate::matching::alignment::{Alignment, align, settle};
 use crate::evaluate::residues::residue::{Number, Residue};
+use crate::evaluate::residues::segments::{Step, step};
+use crate::evaluate::residues::{Residues, Segment};
 
 /// Residues of one of the user's chains matched with those of one of the native's.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +47,39 @@ impl ChainPair {
     fn shares(&self, least: f64) -> bool {
         let (ours, theirs) = self.lengths;
         !self.pairs.is_empty() && self.pairs.len() as f64 >= least * ours.min(theirs) as f64
+    }
+
+    /// Moves gaps that the sequences leave open to where residues lie nearest each other after `motion`; whether any moved.
+    pub fn settle(&mut self, user: &Residues, native: &Residues, motion: &Pose) -> bool {
+        let (ours, theirs) = (
+            &user.segments[self.user].members,
+            &native.segments[self.native].members,
+        );
+        let [Some(&first), Some(&other)] = [ours.first(), theirs.first()] else {
+            return false;
+        };
+        // Members of a segment are consecutive.
+        let mut pairs: Vec<(usize, usize)> = self
+            .pairs
+            .iter()
+            .map(|&(i, j)| (i - first, j - other))
+            .collect();
+        let rises = pairs.windows(2).all(|pair| pair[0].1 < pair[1].1);
+        let moved = |point: Point3<f64>| Point3::from(motion.apply(point.into()));
+        let any = rises
+            && settle(
+                &members(user, ours),
+                &members(native, theirs),
+                &mut pairs,
+                moved,
+            );
+        if any {
+            self.pairs = pairs
+                .into_iter()
+                .map(|(i, j)| (i + first, j + other))
+                .collect();
+        }
+        any
     }
 
     fn of(
@@ -91,18 +128,28 @@ pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<
     all
 }
 
-/// What the alignment of a chain depends on.
-type Kind<'a> = Vec<(&'a str, Number)>;
+/// What the alignment of a chain depends on: each residue's name and number, and what follows it.
+type Kind<'a> = Vec<(&'a str, Number, Option<Step>)>;
 
 fn kinds(residues: &Residues) -> Vec<Kind<'_>> {
-    let kind = |&member: &usize| {
-        let residue = &residues.residues[member];
-        (residue.kind.as_str(), residue.number)
+    let of_segment = |segment: &Segment| {
+        let members = segment
+            .members
+            .iter()
+            .map(|&member| &residues.residues[member]);
+        let next = members.clone().skip(1).map(Some).chain([None]);
+        let kind = |(residue, next): (&'_ Residue, Option<&Residue>)| {
+            (residue.number, next.map(|next| step(residue, next)))
+        };
+        let kinds = members.zip(next);
+        kinds
+            .map(|(residue, next)| {
+                let (number, step) = kind((residue, next));
+                (residue.kind.as_str(), number, step)
+            })
+            .collect()
     };
-    let segments = residues.segments.iter();
-    segments
-        .map(|segment| segment.members.iter().map(kind).collect())
-        .collect()
+    residues.segments.iter().map(of_segment).collect()
 }
 
 fn members<'a>(residues: &'a Residues, members: &[usize]) -> Vec<&'a Residue> {

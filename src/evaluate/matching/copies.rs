@@ -1,13 +1,12 @@
-//! Choice of the native's copies: the complex by which poses are measured.
+//! The native's complexes: placements of both sides that share no residue and touch.
 //!
-//! A crystal's file holds several complexes, and neighbours that only touch in the crystal. Each side's
-//! [`placements`](crate::evaluate::matching::placements) are combined, without a residue in both; a combination
-//! counts that matches nearly as much of both sides as the best does and whose sides touch. The one with most
-//! contacts is the complex; of several that stand alike, the one whose chain names agree.
+//! A crystal's file holds several complexes, and neighbours that only touch in the crystal. A combination of the sides'
+//! [`placements`](crate::evaluate::matching::placements) counts if it matches nearly as much of both sides as the best
+//! does. Every pose is measured by the one with its best DockQ. Unless the user names chains, contacts of a few residues
+//! are set aside if the native has a real interface.
 
 use std::collections::HashMap;
 
-use knotdock_scoring::se3::Pose;
 use nalgebra::{Point3, Vector3};
 
 use crate::evaluate::contacts::contacts_between;
@@ -18,8 +17,8 @@ use crate::evaluate::residues::Residues;
 
 /// Share of what the best combination matches, of either side, that another must match.
 const MIN_OF_BEST: f64 = 0.8;
-/// Complexes are alike when their ligands differ by at most this shift in Å and this angle in radians (20 degrees).
-const ALIKE: (f64, f64) = (4.0, std::f64::consts::PI / 9.0);
+/// Fewer residue contacts than this, and than this share of the largest interface's, are a crystal contact.
+const CRYSTAL_CONTACT: (usize, f64) = (10, 0.2);
 
 /// A receptor's placement with a ligand's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,6 +48,30 @@ impl PlacedCopy<'_> {
         let chains = self.placements[placement].chains.iter();
         chains.filter(is_same).map(|chain| chain.pairs.len()).sum()
     }
+
+    /// Names of the chains of a placement: the user's and the native's.
+    fn names(&self, placement: usize) -> Vec<(&str, &str)> {
+        let chains = self.placements[placement].chains.iter();
+        let name = |chain: &ChainPair| {
+            let (user, native) = (chain.user, chain.native);
+            (
+                self.user.segments[user].name.as_str(),
+                self.native.segments[native].name.as_str(),
+            )
+        };
+        let mut names: Vec<_> = chains.map(name).collect();
+        names.sort_unstable();
+        names
+    }
+}
+
+/// Combinations of the two sides, those of most equal chain names first, then those of most contacts.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(in crate::evaluate) struct Combinations {
+    /// Those by which poses are measured; never empty.
+    pub measured: Vec<Combination>,
+    /// Crystal contacts.
+    pub set_aside: Vec<Combination>,
 }
 
 /// Why nothing can be combined.
@@ -60,14 +83,16 @@ pub(in crate::evaluate) enum Uncombined {
     NoContact,
 }
 
-/// The combinations that count, the complex first and then by their contacts.
+/// The combinations that count.
 ///
-/// `disjoint` where both sides are placed on one native, of which no residue can belong to both.
+/// `disjoint` where both sides are placed on one native, of which no residue can belong to both; `named` where the user
+/// names chains, so that no contact is too small.
 pub(in crate::evaluate) fn combinations(
     receptor: PlacedCopy,
     ligand: PlacedCopy,
     disjoint: bool,
-) -> Result<Vec<Combination>, Uncombined> {
+    named: bool,
+) -> Result<Combinations, Uncombined> {
     let mut counts = ContactCounts::new(receptor.native, ligand.native);
     let mut all = Vec::new();
     let mut any_disjoint = false;
@@ -75,26 +100,19 @@ pub(in crate::evaluate) fn combinations(
         let ours = on_receptor.native_segments();
         for (l, on_ligand) in ligand.placements.iter().enumerate() {
             let theirs = on_ligand.native_segments();
-            let shared: Vec<usize> = match disjoint {
-                true => ours
-                    .iter()
-                    .copied()
-                    .filter(|one| theirs.contains(one))
-                    .collect(),
-                false => Vec::new(),
-            };
-            if !shared.is_empty() && overlap(on_receptor, on_ligand) {
+            let is_shared = disjoint && ours.iter().any(|one| theirs.contains(one));
+            if is_shared && overlap(on_receptor, on_ligand) {
                 continue;
             }
             any_disjoint = true;
-            let contacts = if shared.is_empty() {
+            let contacts = if is_shared {
+                let (ours, theirs) = (on_receptor.natives(), on_ligand.natives());
+                contacts_between(receptor.native, &ours, ligand.native, &theirs)
+            } else {
                 let pairs = ours
                     .iter()
                     .flat_map(|&n| theirs.iter().map(move |&m| (n, m)));
                 pairs.map(|(n, m)| counts.of(n, m)).sum()
-            } else {
-                let (ours, theirs) = (on_receptor.natives(), on_ligand.natives());
-                contacts_between(receptor.native, &ours, ligand.native, &theirs)
             };
             all.push(Combination {
                 receptor: r,
@@ -111,29 +129,21 @@ pub(in crate::evaluate) fn combinations(
         return Err(Uncombined::NoContact);
     }
     let mut all = nearly_complete(receptor, ligand, all);
-    let same_named =
-        |one: &Combination| receptor.same_named(one.receptor) + ligand.same_named(one.ligand);
-    all.sort_by_key(|one| std::cmp::Reverse((one.contacts, same_named(one))));
-    let pose = |one: &Combination| {
-        let (r, l) = (
-            &receptor.placements[one.receptor],
-            &ligand.placements[one.ligand],
-        );
-        r.motion.inverse().after(&l.motion)
-    };
-    let Some(largest) = all.first().map(pose) else {
-        return Err(Uncombined::NoContact);
-    };
-    let center = center_of(ligand.user);
-    let mut chosen = 0;
-    for (place, one) in all.iter().enumerate() {
-        if are_alike(&pose(one), &largest, center) && same_named(one) > same_named(&all[chosen]) {
-            chosen = place;
-        }
-    }
-    let complex = all.remove(chosen);
-    all.insert(0, complex);
-    Ok(all)
+    // By what they are, not by their order in the file.
+    all.sort_by_cached_key(|one| {
+        let same_named = receptor.same_named(one.receptor) + ligand.same_named(one.ligand);
+        let names = (receptor.names(one.receptor), ligand.names(one.ligand));
+        (std::cmp::Reverse((same_named, one.contacts)), names)
+    });
+    let most = all.iter().map(|one| one.contacts).max().unwrap_or(0);
+    let (few, share) = CRYSTAL_CONTACT;
+    let (measured, set_aside) = all.into_iter().partition(|one| {
+        named || one.contacts >= few || one.contacts as f64 >= share * most as f64
+    });
+    Ok(Combinations {
+        measured,
+        set_aside,
+    })
 }
 
 /// Those that match of both sides nearly as much as the best, and of these the ones that fit, if any does.
@@ -157,10 +167,9 @@ fn nearly_complete(
     };
     let best = all.iter().map(share).fold(0.0, f64::max);
     let complete = |one: &Combination| share(one) >= MIN_OF_BEST * best;
-    let fits =
-        |placement: &Placement| placement.rmsd <= MAX_FIT_RMSD && placement.displaced.is_none();
     let fit = |one: &Combination| {
-        fits(&receptor.placements[one.receptor]) && fits(&ligand.placements[one.ligand])
+        receptor.placements[one.receptor].rmsd <= MAX_FIT_RMSD
+            && ligand.placements[one.ligand].rmsd <= MAX_FIT_RMSD
     };
     let (fitting, others): (Vec<_>, Vec<_>) = all.into_iter().filter(complete).partition(fit);
     if fitting.is_empty() { others } else { fitting }
@@ -172,17 +181,6 @@ fn overlap(receptor: &Placement, ligand: &Placement) -> bool {
     ligand
         .pairs()
         .any(|(_, native)| taken.binary_search(&native).is_ok())
-}
-
-fn center_of(residues: &Residues) -> Point3<f64> {
-    let sum: Vector3<f64> = residues.residues.iter().map(|one| one.center.coords).sum();
-    Point3::from(sum / residues.residues.len().max(1) as f64)
-}
-
-fn are_alike(a: &Pose, b: &Pose, center: Point3<f64>) -> bool {
-    let (shift, angle) = ALIKE;
-    let place = |pose: &Pose| Point3::from(pose.apply(center.into()));
-    nalgebra::distance(&place(a), &place(b)) <= shift && a.rotation.angle_to(&b.rotation) <= angle
 }
 
 /// Contacts of the native's chains, each pair counted once.

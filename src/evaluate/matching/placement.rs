@@ -13,19 +13,6 @@ pub(in crate::evaluate) struct Placement {
     pub motion: Pose,
     /// Backbone RMSD in Å of all matched residues after `motion`.
     pub rmsd: f64,
-    /// A chain whose only counterpart stands where the rest of the side does not allow it.
-    pub displaced: Option<Displaced>,
-}
-
-/// A chain of the user's that the native has elsewhere.
-#[derive(Clone, Debug, PartialEq)]
-pub(in crate::evaluate) struct Displaced {
-    /// Name of the user's chain.
-    pub chain: String,
-    /// Name of the native's.
-    pub native_chain: String,
-    /// How far the second is from where it should be, RMSD in Å.
-    pub distance: f64,
 }
 
 impl Placement {
@@ -39,6 +26,12 @@ impl Placement {
     /// Number of equal residues.
     pub fn matched(&self) -> usize {
         self.chains.iter().map(|chain| chain.pairs.len()).sum()
+    }
+
+    /// Equal residues as a share, 0 to 1, of all aligned ones.
+    pub fn identity(&self) -> f64 {
+        let aligned: usize = self.chains.iter().map(|chain| chain.aligned).sum();
+        self.matched() as f64 / aligned.max(1) as f64
     }
 
     /// Indices of the native's segments that have part in it, rising.

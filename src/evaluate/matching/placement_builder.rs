@@ -3,8 +3,9 @@
 use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
+use crate::evaluate::chain_choice::ChainChoice;
 use crate::evaluate::matching::chain_pair::{ChainPair, align_members};
-use crate::evaluate::matching::placement::{Displaced, Placement};
+use crate::evaluate::matching::placement::Placement;
 use crate::evaluate::matching::superposition::{MAX_FIT_RMSD, PointPair, Superposition};
 use crate::evaluate::residues::Residues;
 use crate::evaluate::rmsd::backbone_pairs;
@@ -42,17 +43,22 @@ pub(in crate::evaluate) struct Builder<'a> {
     user: &'a Residues,
     native: &'a Residues,
     candidates: &'a [Candidate],
+    choice: &'a ChainChoice,
     /// Members of each segment that are not matched yet.
     free: [Vec<Vec<usize>>; 2],
     chains: Vec<ChainPair>,
     points: Vec<PointPair>,
     motion: Pose,
     rmsd: f64,
-    displaced: Option<Displaced>,
 }
 
 impl<'a> Builder<'a> {
-    pub fn new(user: &'a Residues, native: &'a Residues, candidates: &'a [Candidate]) -> Self {
+    pub fn new(
+        user: &'a Residues,
+        native: &'a Residues,
+        candidates: &'a [Candidate],
+        choice: &'a ChainChoice,
+    ) -> Self {
         let members = |residues: &Residues| -> Vec<Vec<usize>> {
             let segments = residues.segments.iter();
             segments.map(|segment| segment.members.clone()).collect()
@@ -61,12 +67,12 @@ impl<'a> Builder<'a> {
             user,
             native,
             candidates,
+            choice,
             free: [members(user), members(native)],
             chains: Vec::new(),
             points: Vec::new(),
             motion: Pose::identity(),
             rmsd: 0.0,
-            displaced: None,
         }
     }
 
@@ -80,7 +86,6 @@ impl<'a> Builder<'a> {
             chains: self.chains,
             motion: self.motion,
             rmsd: self.rmsd,
-            displaced: self.displaced,
         }
     }
 
@@ -164,8 +169,13 @@ impl<'a> Builder<'a> {
         if whole == (true, true) {
             return None;
         }
+        let segments = (&self.user.segments[user], &self.native.segments[native]);
         let (ours, theirs) = (&self.free[0][user], &self.free[1][native]);
-        if ours.is_empty() || theirs.is_empty() || !self.are_near(ours, theirs) {
+        if !self.choice.allows(segments.0, segments.1)
+            || ours.is_empty()
+            || theirs.is_empty()
+            || !self.are_near(ours, theirs)
+        {
             return None;
         }
         let pair = align_members(self.user, self.native, (user, ours), (native, theirs));
@@ -235,20 +245,14 @@ impl<'a> Builder<'a> {
                     nearest = Some((distance, pair));
                 }
             }
-            let Some((distance, pair)) = nearest else {
+            let Some((_, pair)) = nearest else {
                 continue;
             };
             let added = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
             let points = [self.points.as_slice(), &added].concat();
             let all = Superposition::new(&points);
-            if all.rmsd(&all.best) <= MAX_FIT_RMSD {
+            if all.rmsd(&all.best) <= MAX_FIT_RMSD || pair.pairs.len() >= DISTINCTIVE {
                 self.take(pair);
-            } else if pair.pairs.len() >= DISTINCTIVE {
-                self.displaced.get_or_insert(Displaced {
-                    chain: self.user.segments[user].name.clone(),
-                    native_chain: self.native.segments[pair.native].name.clone(),
-                    distance,
-                });
             }
         }
     }

@@ -7,8 +7,9 @@
 //! orders that fit; for a ring of n they are its n rotations.
 //!
 //! A chain that finds nothing in its place is given the one chain of its sequence, even if that stands elsewhere (a
-//! hinge, a domain that moved). Where the whole would then fit no longer, the placement is displaced.
+//! hinge, a domain that moved).
 
+use crate::evaluate::chain_choice::ChainChoice;
 use crate::evaluate::matching::chain_pair::{ChainPair, align_all};
 use crate::evaluate::matching::placement::Placement;
 use crate::evaluate::matching::placement_builder::{Builder, Candidate};
@@ -23,11 +24,18 @@ const MAX_PLACEMENTS: usize = 256;
 /// Pairs of fewer residues lie together by chance, where there are longer ones.
 const MIN_PAIRS: usize = 3;
 
-/// The ways in which the user's side may lie on the native, the pair with most residues first. Empty when no sequence
-/// matches.
-pub(in crate::evaluate) fn placements(user: &Residues, native: &Residues) -> Vec<Placement> {
+/// The ways in which the user's side may lie on the native, by chains that the user's choice allows, the pair with most
+/// residues first. Empty when no sequence matches.
+pub(in crate::evaluate) fn placements(
+    user: &Residues,
+    native: &Residues,
+    choice: &ChainChoice,
+) -> Vec<Placement> {
     let mut alike = align_all(user, native);
-    alike.retain(ChainPair::is_alike);
+    alike.retain(|pair| {
+        let segments = (&user.segments[pair.user], &native.segments[pair.native]);
+        pair.is_alike() && choice.allows(segments.0, segments.1)
+    });
     let largest = alike
         .iter()
         .map(|pair| pair.pairs.len())
@@ -37,9 +45,14 @@ pub(in crate::evaluate) fn placements(user: &Residues, native: &Residues) -> Vec
     let candidates: Vec<Candidate> = alike
         .into_iter()
         .filter(|pair| pair.pairs.len() >= least)
-        .map(|pair| {
-            let superposition =
-                Superposition::new(&backbone_pairs(user, native, pair.pairs.iter().copied()));
+        .map(|mut pair| {
+            let superposed = |pair: &ChainPair| {
+                Superposition::new(&backbone_pairs(user, native, pair.pairs.iter().copied()))
+            };
+            let mut superposition = superposed(&pair);
+            if pair.settle(user, native, &superposition.best) {
+                superposition = superposed(&pair);
+            }
             Candidate {
                 pair,
                 superposition,
@@ -62,7 +75,7 @@ pub(in crate::evaluate) fn placements(user: &Residues, native: &Residues) -> Vec
             break;
         }
         made += 1;
-        let placement = Builder::new(user, native, &candidates).grow_from(seed);
+        let placement = Builder::new(user, native, &candidates, choice).grow_from(seed);
         let pairs = placement.sorted_pairs();
         if !found.iter().any(|known| known.sorted_pairs() == pairs) {
             found.push(placement);
@@ -74,6 +87,7 @@ pub(in crate::evaluate) fn placements(user: &Residues, native: &Residues) -> Vec
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
     use crate::evaluate::test_molecules::{
         chain_of, helix, molecule, moved, numbers, random_sequence, renamed,
     };
@@ -99,7 +113,7 @@ mod tests {
     /// (user chain, native chain, equal residues) of the first placement, sorted.
     fn matched(user: &[Atom], native: &[Atom]) -> Vec<(String, String, usize)> {
         let (user, native) = (residues(user), residues(native));
-        let found = placements(&user, &native);
+        let found = placements(&user, &native, &ChainChoice::default());
         let mut rows: Vec<_> = found[0]
             .chains
             .iter()
@@ -188,28 +202,22 @@ mod tests {
     }
 
     #[test]
-    fn a_chain_elsewhere_is_displaced() {
+    fn a_chain_elsewhere_is_matched_all_the_same() {
         let (heavy, light) = (random_sequence(3, 60), random_sequence(4, 50));
         let user = residues(&chains(&[("H", &heavy, 1, 0.0), ("L", &light, 1, 12.0)]));
-        // A hinge is matched all the same.
-        let native = residues(&chains(&[("A", &heavy, 1, 0.0), ("B", &light, 1, 24.0)]));
-        let found = placements(&user, &native);
-        assert_eq!((found[0].matched(), &found[0].displaced), (110, &None));
-        let native = residues(&chains(&[("A", &heavy, 1, 0.0), ("B", &light, 1, 82.0)]));
-        let found = placements(&user, &native);
-        let displaced = found[0].displaced.clone().unwrap();
-        assert_eq!(
-            (displaced.chain.as_str(), displaced.native_chain.as_str()),
-            ("L", "B")
-        );
-        assert!((displaced.distance - 70.0).abs() < 1e-6);
+        for x in [24.0, 82.0] {
+            let native = residues(&chains(&[("A", &heavy, 1, 0.0), ("B", &light, 1, x)]));
+            let found = placements(&user, &native, &ChainChoice::default());
+            assert_eq!(found[0].matched(), 110);
+            assert_eq!(found[0].rmsd > MAX_FIT_RMSD, x > 80.0);
+        }
     }
 
     #[test]
     fn strangers_are_not_matched() {
         let user = residues(&chains(&[("A", &random_sequence(7, 100), 1, 0.0)]));
         let native = residues(&chains(&[("A", &random_sequence(8, 100), 1, 0.0)]));
-        assert!(placements(&user, &native).is_empty());
+        assert!(placements(&user, &native, &ChainChoice::default()).is_empty());
     }
 
     /// A ring of `names.len()` copies of one chain about the z axis.
@@ -234,7 +242,10 @@ mod tests {
     #[test]
     fn ring_of_four_has_its_four_rotations() {
         let ring = ring(&["A", "B", "C", "D"]);
-        let mut found: Vec<_> = placements(&ring, &ring).iter().map(natives).collect();
+        let mut found: Vec<_> = placements(&ring, &ring, &ChainChoice::default())
+            .iter()
+            .map(natives)
+            .collect();
         found.sort();
         assert_eq!(
             found,
@@ -245,8 +256,9 @@ mod tests {
     #[test]
     fn one_chain_of_two_may_be_either_of_the_natives() {
         let (two, one) = (ring(&["A", "B"]), ring(&["A"]));
-        assert_eq!(placements(&two, &one).len(), 2);
-        assert_eq!(placements(&one, &two).len(), 2);
-        assert_eq!(placements(&one, &one).len(), 1);
+        let count = |user, native| placements(user, native, &ChainChoice::default()).len();
+        assert_eq!(count(&two, &one), 2);
+        assert_eq!(count(&one, &two), 2);
+        assert_eq!(count(&one, &one), 1);
     }
 }

@@ -23,6 +23,21 @@ pub(in crate::evaluate) struct Segment {
     pub members: Vec<usize>,
 }
 
+impl Segment {
+    /// Author chain name.
+    pub fn chain(&self) -> &str {
+        chain_of(&self.name)
+    }
+}
+
+/// Author chain name of a segment's name.
+pub(in crate::evaluate) fn chain_of(segment: &str) -> &str {
+    match segment.rsplit_once('/') {
+        Some((chain, piece)) if piece.bytes().all(|byte| byte.is_ascii_digit()) => chain,
+        _ => segment,
+    }
+}
+
 /// All residues of a molecule that the evaluation uses.
 #[derive(Clone, Debug, Default)]
 pub(in crate::evaluate) struct Residues {
@@ -232,7 +247,7 @@ mod tests {
             ("DSN", "SER"),
             ("X", "SER"),
             ("CSER", "SER"),
-            ("SEP", "SEP"),
+            ("SEP", "SER"),
         ] {
             let atoms = serine.map(|atom_name| atom("A", 1, name, atom_name, [0.0; 3]));
             let residues = Residues::of(&molecule(atoms.to_vec()), "receptor").unwrap();

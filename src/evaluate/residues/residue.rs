@@ -104,12 +104,25 @@ impl Residue {
 /// The name under which residues are compared.
 ///
 /// `name` is what its atoms or its name show it to be ([`standard_residue_name`]). Selenomethionine counts as
-/// methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3; names of force fields count as the
-/// plain residue's, and nucleotides as their base ([`plain_residue_name`]).
+/// methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3. Other amino acids that are modified
+/// after translation count as their parents (wwPDB Chemical Component Dictionary, `mon_nstd_parent_comp_id`). Names of
+/// force fields count as the plain residue's, and nucleotides as their base ([`plain_residue_name`]).
 pub(in crate::evaluate) fn kind(name: &str) -> String {
     let plain = match name {
-        "MSE" => "MET",
-        "CME" => "CYS",
+        "MSE" | "FME" | "SME" => "MET",
+        "CME" | "CSO" | "CSD" | "CSX" | "CSS" | "OCS" | "SMC" | "SNC" | "CAF" | "CAS" | "YCM"
+        | "SEC" => "CYS",
+        "SEP" | "SAC" => "SER",
+        "TPO" => "THR",
+        "PTR" | "TYS" | "IYR" => "TYR",
+        "MLY" | "MLZ" | "M3L" | "KCX" | "ALY" | "LLP" | "LYZ" => "LYS",
+        "HYP" => "PRO",
+        "CGU" => "GLU",
+        "PHD" | "IAS" => "ASP",
+        "AGM" | "CIR" | "2MR" | "DA2" => "ARG",
+        "HIC" | "NEP" | "MHS" => "HIS",
+        "MEN" => "ASN",
+        "MGN" => "GLN",
         other => plain_residue_name(other),
     };
     plain.to_owned()

@@ -63,6 +63,27 @@ enum Link {
     Unknown,
 }
 
+/// What the file shows of missing residues between two that follow each other.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(in crate::evaluate) enum Step {
+    /// Bonded, or of consecutive numbers where no atoms show a bond.
+    Joined,
+    /// Bonded, but the numbers leave some out.
+    Numbered,
+    /// Not bonded, or not of consecutive numbers where no atoms show a bond.
+    Broken,
+}
+
+/// What the file shows between two residues of a chain.
+pub(in crate::evaluate) fn step(before: &Residue, after: &Residue) -> Step {
+    let consecutive = after.number.0.saturating_sub(before.number.0) <= 1;
+    match (link(before, after), consecutive) {
+        (Link::Bonded, true) | (Link::Unknown, true) => Step::Joined,
+        (Link::Bonded, false) => Step::Numbered,
+        (Link::Distant(..), _) | (Link::Unknown, false) => Step::Broken,
+    }
+}
+
 /// Link from `before` to `after`.
 fn link(before: &Residue, after: &Residue) -> Link {
     let measured = |from: usize, to: usize| {

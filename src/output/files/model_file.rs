@@ -56,7 +56,7 @@ pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Fi
         .collect();
     let mut failed = None;
     let written = write_new(&path, |mut file| {
-        let mut models = ModelWriter::new(&mut file, format, &remarks).map_err(io_error)?;
+        let mut models = ModelWriter::new(&mut file, format, remarks);
         for pair in pairs {
             match complex(pair) {
                 Ok(others) => {

@@ -14,7 +14,6 @@ use crate::dock::memory::stages::MemoryStage;
 use crate::dock::outcome::MeasuredError;
 use crate::dock::outcome::{DockOutcome, EffectCost, SharpOutcome, StageTime};
 use crate::dock::plan::DockPlan;
-use crate::evaluate::MatchReport;
 use crate::mesh::SampledPart;
 use crate::options::DockOptions;
 use crate::output::files::whole_file::to_json;
@@ -161,7 +160,7 @@ pub struct Manifest<'a> {
     files: BTreeMap<String, String>,
     chains: Option<&'a ChainMap>,
     #[serde(rename = "match")]
-    matching: Option<&'a MatchReport>,
+    matching: Option<Value>,
     timing: Timing,
     machine: Machine,
 }
@@ -182,8 +181,8 @@ pub struct ManifestParts<'a> {
     pub files: BTreeMap<String, String>,
     /// Chain names in the complexes; none of meshes.
     pub chains: Option<&'a ChainMap>,
-    /// Report on the native's matching, if there is one.
-    pub matching: Option<&'a MatchReport>,
+    /// Report on the native's matching, or why it does not match, if there is one.
+    pub matching: Option<Value>,
     /// What it cost.
     pub timing: Timing,
     /// Where it ran.

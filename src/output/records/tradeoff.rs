@@ -6,7 +6,6 @@ use std::io;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
-use crate::evaluate::MatchReport;
 use crate::options::DockOptions;
 use crate::options::check::name_of;
 use crate::output::files::whole_file::to_json;
@@ -161,7 +160,7 @@ pub struct TradeoffRecord<'a> {
     advice: Option<&'a Advice>,
     files: BTreeMap<String, String>,
     #[serde(rename = "match")]
-    matching: Option<&'a MatchReport>,
+    matching: Option<Value>,
     machine: Machine,
 }
 
@@ -175,8 +174,8 @@ pub struct TradeoffParts<'a> {
     pub tradeoff: &'a Tradeoff,
     /// What to take.
     pub advice: Option<&'a Advice>,
-    /// Report on the native's matching, if there is one.
-    pub matching: Option<&'a MatchReport>,
+    /// Report on the native's matching, or why it does not match, if there is one.
+    pub matching: Option<Value>,
     /// SHA-256 of each other file, by its name.
     pub files: BTreeMap<String, String>,
     /// Where it ran.

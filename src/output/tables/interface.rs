@@ -1,4 +1,4 @@
-//! Tables of interfaces: a row for each complex, and a row for each pair of residues in contact.
+//! Tables of interfaces: a row for each model of each complex file, and a row for each pair of residues in contact.
 
 use std::io;
 
@@ -15,6 +15,8 @@ use crate::output::tables::fields::number;
 pub struct InterfaceRow {
     /// Its file as it was named.
     pub file: String,
+    /// Its place among the models of the file, from 1.
+    pub model: usize,
     /// Chains of each side, with commas between them.
     pub chains: [String; 2],
     /// What holds it together.
@@ -32,6 +34,7 @@ impl InterfaceRow {
         let mut columns = Map::new();
         let mut add = |name: &str, value: Value| columns.insert(name.to_owned(), value);
         add("file", json!(self.file));
+        add("model", json!(self.model));
         add("chains_1", json!(self.chains[0]));
         add("chains_2", json!(self.chains[1]));
         add("contacts", json!(interface.pairs.len()));
@@ -87,8 +90,9 @@ pub fn write_rows(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Resu
 }
 
 /// Columns of the table of pairs.
-const PAIRS: [&str; 10] = [
+const PAIRS: [&str; 11] = [
     "file",
+    "model",
     "chain_1",
     "residue_1",
     "name_1",
@@ -113,9 +117,10 @@ pub fn write_pairs(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Res
             let distance = number(pair.distance);
             let bonds = pair.hydrogen_bonds.to_string();
             let bridge = pair.salt_bridge.to_string();
+            let model = row.model.to_string();
             table.row([
-                &row.file, &a.chain, &a.number, &a.name, &b.chain, &b.number, &b.name, &distance,
-                &bonds, &bridge,
+                &row.file, &model, &a.chain, &a.number, &a.name, &b.chain, &b.number, &b.name,
+                &distance, &bonds, &bridge,
             ])?;
         }
     }

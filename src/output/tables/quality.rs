@@ -6,11 +6,15 @@ use crate::evaluate::{Criterion, PoseQuality};
 
 use crate::output::tables::fields::{Column, number};
 
-/// Columns `irmsd` and `lrmsd` in Å, `fnat` and `dockq` from 0 to 1, and `capri`, the class's name.
-pub fn columns(qualities: &[PoseQuality]) -> Vec<Column> {
+/// Columns `irmsd` and `lrmsd` in Å, `fnat` and `dockq` from 0 to 1, and `capri`, the class's name; empty for a pose that
+/// could not be measured.
+pub fn columns(qualities: &[Option<PoseQuality>]) -> Vec<Column> {
     let column = |name: &str, field: &dyn Fn(&PoseQuality) -> String| Column {
         name: name.to_owned(),
-        fields: qualities.iter().map(field).collect(),
+        fields: qualities
+            .iter()
+            .map(|quality| quality.as_ref().map(field).unwrap_or_default())
+            .collect(),
     };
     vec![
         column("irmsd", &|quality| number(quality.irmsd)),

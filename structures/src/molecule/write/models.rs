@@ -14,26 +14,34 @@ use crate::molecule::write::{check, complex_rows, mmcif, pdb};
 pub struct ModelWriter<'a, W: Write> {
     writer: &'a mut W,
     format: Format,
+    /// Remarks of the head, until it is written with the first model.
+    remarks: Option<Vec<String>>,
     models: usize,
     atoms: usize,
 }
 
 impl<'a, W: Write> ModelWriter<'a, W> {
-    /// Begins a file with free remarks.
-    ///
-    /// # Errors
-    /// [`WriteError`] when the writer fails.
-    pub fn new(writer: &'a mut W, format: Format, remarks: &[String]) -> Result<Self, WriteError> {
-        match format {
-            Format::Pdb => pdb::write_remarks(writer, remarks)?,
-            Format::Mmcif => mmcif::write_head(writer, remarks)?,
-        }
-        Ok(Self {
+    /// Begins a file with free remarks; those on the chains of the first model follow.
+    pub fn new(writer: &'a mut W, format: Format, remarks: Vec<String>) -> Self {
+        Self {
             writer,
             format,
+            remarks: Some(remarks),
             models: 0,
             atoms: 0,
-        })
+        }
+    }
+
+    /// Writes the head, once.
+    fn write_head(&mut self, chains: Vec<String>) -> Result<(), WriteError> {
+        let Some(mut remarks) = self.remarks.take() else {
+            return Ok(());
+        };
+        remarks.extend(chains);
+        match self.format {
+            Format::Pdb => pdb::write_remarks(self.writer, &remarks),
+            Format::Mmcif => mmcif::write_head(self.writer, &remarks),
+        }
     }
 
     /// Writes receptor and placed molecules as the next model; models are counted from 1.
@@ -44,6 +52,7 @@ impl<'a, W: Write> ModelWriter<'a, W> {
         let map = ChainMap::of_complex(self.format, molecules)?;
         let rows = complex_rows(molecules, &map);
         check(self.format, &rows)?;
+        self.write_head(map.remarks())?;
         self.models += 1;
         match self.format {
             Format::Pdb => pdb::write_model(self.writer, &rows, self.models)?,
@@ -59,7 +68,8 @@ impl<'a, W: Write> ModelWriter<'a, W> {
     ///
     /// # Errors
     /// [`WriteError`] when the writer fails.
-    pub fn finish(self) -> Result<(), WriteError> {
+    pub fn finish(mut self) -> Result<(), WriteError> {
+        self.write_head(Vec::new())?;
         match self.format {
             Format::Pdb => pdb::write_end(self.writer),
             Format::Mmcif => mmcif::write_end(self.writer),
@@ -83,13 +93,15 @@ mod tests {
         let moved = |x: f64| one.map_positions(|[a, b, c]| [a + x, b, c]);
         for (format, name) in [(Format::Pdb, "x.pdb"), (Format::Mmcif, "x.cif")] {
             let mut bytes = Vec::new();
-            let remarks = ["a remark".to_owned()];
-            let mut models = ModelWriter::new(&mut bytes, format, &remarks).unwrap();
+            let remarks = vec!["a remark".to_owned()];
+            let mut models = ModelWriter::new(&mut bytes, format, remarks);
             for x in [10.0, 20.0, 30.0] {
                 let map = models.write(&[&one, &moved(x)]).unwrap();
                 assert_eq!(map.chains.len(), 2);
             }
             models.finish().unwrap();
+            let text = String::from_utf8_lossy(&bytes);
+            assert_eq!(text.matches("chain B is ligand chain A").count(), 1);
             assert_eq!(model_count(name.as_ref(), bytes.clone()).unwrap(), 3);
             for (number, x) in [(1, 11.0), (2, 21.0), (3, 31.0)] {
                 let options = ReadOptions {
