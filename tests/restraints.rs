@@ -173,7 +173,9 @@ fn presets_and_statements_mean_the_same() {
     let folder = tempfile::tempdir().unwrap();
     let table = "receptor,ligand\nA:60,B:28\n";
     let of_table = dock(folder.path(), "known.csv", table, "--crosslink dss");
-    let statement = "! a cross-link\nassign (segid A and resid 60 and name CA) (segid B and resid 28 and name CA) 30 30 0\n";
+    // HADDOCK adds distances within a molecule, which docking does not change.
+    let statement = "! a cross-link\nassign (segid A and resid 60 and name CA) (segid B and resid 28 and name CA) 30 30 0\n\
+        assign (segid A and resid 60 and name CA) (segid A and resid 97 and name CA) 14.1 1.0 1.0\n";
     let of_statement = dock(folder.path(), "known.tbl", statement, "");
     assert_eq!(of_table, of_statement);
 }

@@ -173,6 +173,11 @@ class DockOptions(TypedDict, total=False):
     """How many of the restraints a pose has to satisfy: a number, or a share such as 60%. Ask for fewer than
     all if some may be false. [default: 100%]"""
 
+    tbl_bounds: Literal["widened", "written"]
+    """Upper bounds of a .tbl: widened for the hydrogens that they count, or as written. HADDOCK sums over
+    hydrogens, which are dropped here. widened: 2 Å is 2.78 Å between heavy atoms. Selections without hydrogens,
+    such as name CA, keep their bounds. [default: widened]"""
+
     crosslink: str | float | Sequence[object]
     """Reagent of cross-links: DSS or BS3. Rows of --restraints without an upper bound get that of the reagent,
     between CA atoms. DSS and BS3: 30 Å."""

@@ -4,14 +4,9 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::PolarAtom;
 use knotdock_structures::molecule::{Atom, Molecule};
 use knotdock_structures::neighbours::{CellList, Member};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
-use super::{CONTACT, HYDROGEN_BOND, ResidueName, SALT_BRIDGE};
-
-/// Least charge of a side chain that is charged, in e.
-const CHARGED: f64 = 0.5;
-/// Atoms that belong to no side chain.
-const BACKBONE: [&str; 5] = ["N", "CA", "C", "O", "OXT"];
+use super::{CLASH, CONTACT, HYDROGEN_BOND, ResidueName, SALT_BRIDGE};
 
 /// Two residues in contact.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +17,8 @@ pub struct Contact {
     pub distance: f64,
     /// Hydrogen bonds between them.
     pub hydrogen_bonds: usize,
+    /// Distance of donor and acceptor of the shortest of these, in Å.
+    pub hydrogen_bond_distance: Option<f64>,
     /// Whether they make a salt bridge.
     pub salt_bridge: bool,
 }
@@ -72,6 +69,7 @@ impl<'a> ContactFinder<'a> {
     pub fn contacts(&self, poses: &[Pose]) -> Vec<Contact> {
         let mut found: BTreeMap<[usize; 2], Contact> = BTreeMap::new();
         for pose in poses {
+            let (mut links, mut clashing) = (Vec::new(), [BTreeSet::new(), BTreeSet::new()]);
             for other in &self.moved {
                 let at = pose.apply(other.atom.position);
                 let relative = from(self.middle, at);
@@ -85,23 +83,61 @@ impl<'a> ContactFinder<'a> {
                         residues,
                         distance: f64::INFINITY,
                         hydrogen_bonds: 0,
+                        hydrogen_bond_distance: None,
                         salt_bridge: false,
                     });
                     contact.distance = contact.distance.min(square.sqrt());
+                    if square < CLASH * CLASH && one.may_clash && other.may_clash {
+                        clashing[0].insert(one.place);
+                        clashing[1].insert(other.place);
+                    }
                     let between = from(one.atom.position, at);
-                    contact.hydrogen_bonds += usize::from(
-                        square <= HYDROGEN_BOND * HYDROGEN_BOND
-                            && one.polar.may_bond(&other.polar)
-                            && faces(one.polar.direction, between)
-                            && faces(direction.into(), between.map(|part| -part)),
-                    );
-                    contact.salt_bridge |=
+                    let is_bond = square <= HYDROGEN_BOND * HYDROGEN_BOND
+                        && one.polar.may_bond(&other.polar)
+                        && faces(one.polar.direction, between)
+                        && faces(direction.into(), between.map(|part| -part));
+                    let is_bridge =
                         square <= SALT_BRIDGE * SALT_BRIDGE && one.sign * other.sign < 0;
+                    if is_bond || is_bridge {
+                        links.push(Link {
+                            residues,
+                            places: [one.place, other.place],
+                            distance: square.sqrt(),
+                            is_bond,
+                            is_bridge,
+                        });
+                    }
                 });
+            }
+            for link in links {
+                let clashes = |side: usize| clashing[side].contains(&link.places[side]);
+                if clashes(0) || clashes(1) {
+                    continue;
+                }
+                let Some(contact) = found.get_mut(&link.residues) else {
+                    continue;
+                };
+                contact.salt_bridge |= link.is_bridge;
+                if link.is_bond {
+                    let shortest = contact.hydrogen_bond_distance.unwrap_or(f64::INFINITY);
+                    contact.hydrogen_bonds += 1;
+                    contact.hydrogen_bond_distance = Some(shortest.min(link.distance));
+                }
             }
         }
         found.into_values().collect()
     }
+}
+
+/// A hydrogen bond or a salt bridge, unless one of its atoms clashes.
+struct Link {
+    residues: [usize; 2],
+    /// Its atom of each side, by [`Site::place`].
+    places: [usize; 2],
+    /// Distance of the two, in Å.
+    distance: f64,
+    is_bond: bool,
+    is_bridge: bool,
 }
 
 /// Cells of the edge [`CONTACT`] that may hold something in contact with one of some points.
@@ -177,10 +213,14 @@ impl NearCells {
 /// An atom with what it may do.
 struct Site<'a> {
     residue: usize,
+    /// Its place among the atoms of its molecule.
+    place: usize,
     atom: &'a Atom,
     polar: PolarAtom,
-    /// Sign of the charge that its side chain may bring to a salt bridge by it.
+    /// Sign of the charge that it may bring to a salt bridge.
     sign: i8,
+    /// Metals are nearer to the atoms that they bind.
+    may_clash: bool,
 }
 
 /// The heavy atoms of a molecule, and the names of the residues that they point to.
@@ -188,22 +228,20 @@ fn sites(molecule: &Molecule, ph: f64) -> (Vec<Site<'_>>, Vec<ResidueName>) {
     let (polar, labels) = (molecule.polar_atoms(), molecule.labels(ph));
     let (mut sites, mut names) = (Vec::new(), Vec::new());
     for (residue, atoms) in heavy_residues(molecule).into_iter().enumerate() {
-        let of_side_chain = atoms
-            .iter()
-            .filter(|&&at| !BACKBONE.contains(&molecule.atoms[at].name.as_str()));
-        let charge: f64 = of_side_chain.map(|&at| labels.charges[at]).sum();
-        for &at in &atoms {
-            let atom = &molecule.atoms[at];
-            let is_end = BACKBONE.contains(&atom.name.as_str());
+        for &place in &atoms {
+            let atom = &molecule.atoms[place];
+            let element = atom.element.as_str();
             sites.push(Site {
                 residue,
+                place,
                 atom,
-                polar: polar[at],
-                sign: match atom.element.as_str() {
-                    "N" if charge > CHARGED && !is_end => 1,
-                    "O" if charge < -CHARGED && !is_end => -1,
+                polar: polar[place],
+                sign: match (element, labels.group_signs[place]) {
+                    ("N", 1) => 1,
+                    ("O", -1) => -1,
                     _ => 0,
                 },
+                may_clash: matches!(element, "C" | "N" | "O" | "P" | "S" | "Se"),
             });
         }
         names.extend(

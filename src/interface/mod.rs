@@ -8,9 +8,11 @@
 //! - **Hydrogen bond**: a donor and an acceptor within 3.5 Å (Baker & Hubbard, Prog. Biophys. Mol. Biol. 44 (1984)
 //!   97-179), each on the side of the other that faces away from what it is bonded to. Files mostly lack hydrogens, so
 //!   that their angles cannot be judged.
-//! - **Salt bridge**: a nitrogen of a positive side chain within 4 Å of an oxygen of a negative one (Barlow & Thornton,
-//!   J. Mol. Biol. 168 (1983) 867-885), at most one for two residues. The charges of the electrostatic effect say which
-//!   side chains are charged; ends of chains are not counted.
+//! - **Salt bridge**: a nitrogen of a positive group within 4 Å of an oxygen of a negative one (Barlow & Thornton, J.
+//!   Mol. Biol. 168 (1983) 867-885), at most one for two residues. Groups are side chains and phosphates that carry a
+//!   charge in the electrostatic effect, and their atoms are those that share it: no bases, sugars, esters or termini.
+//! - **Clash**: two heavy atoms of the two sides, metals aside, nearer than 2.2 Å. Neither takes part in hydrogen bonds
+//!   or salt bridges.
 //! - **Shape complementarity**: Sc of Lawrence & Colman (J. Mol. Biol. 234 (1993) 946-950).
 //! - **Buried surface**: accessible area (probe of 1.4 Å) alone less that in the complex.
 
@@ -38,6 +40,9 @@ pub const CONTACT: f64 = 5.0;
 pub const HYDROGEN_BOND: f64 = 3.5;
 /// Largest distance between the charged atoms of a salt bridge, in Å.
 pub const SALT_BRIDGE: f64 = 4.0;
+/// Distance in Å below which two heavy atoms overlap. The shortest hydrogen bonds have 2.2 Å (Jeffrey, An Introduction to
+/// Hydrogen Bonding, 1997).
+pub const CLASH: f64 = 2.2;
 /// A residue as files name it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]
 pub struct ResidueName {
@@ -69,6 +74,8 @@ pub struct ResiduePair {
     pub distance: f64,
     /// Hydrogen bonds between them.
     pub hydrogen_bonds: usize,
+    /// Distance of donor and acceptor of the shortest of these, in Å.
+    pub hydrogen_bond_distance: Option<f64>,
     /// Whether they make a salt bridge.
     pub salt_bridge: bool,
 }
@@ -107,6 +114,7 @@ impl Interface {
             ],
             distance: contact.distance,
             hydrogen_bonds: contact.hydrogen_bonds,
+            hydrogen_bond_distance: contact.hydrogen_bond_distance,
             salt_bridge: contact.salt_bridge,
         };
         Self {

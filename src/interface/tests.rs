@@ -41,6 +41,7 @@ fn a_lysine_and_an_aspartate_hold_together() {
     assert_eq!((found.pairs.len(), found.residues), (1, [1, 1]));
     assert_eq!((found.hydrogen_bonds, found.salt_bridges), (1, 1));
     assert!((found.pairs[0].distance - 2.9).abs() < 1e-9);
+    assert!((found.pairs[0].hydrogen_bond_distance.unwrap() - 2.9).abs() < 1e-9);
     assert_eq!(found.pairs[0].residues[0].number, "10");
     assert_eq!(found.pairs[0].residues[1].name, "ASP");
     let apart = Interface::of([&lysine(-4.5), &aspartate], 7.0);
@@ -53,6 +54,107 @@ fn a_lysine_and_an_aspartate_hold_together() {
     // From behind: nearer to the carbon than to the oxygen.
     let behind = Interface::of([&aspartate, &lysine(3.4)], 7.0);
     assert_eq!((behind.hydrogen_bonds, behind.salt_bridges), (0, 1));
+}
+
+/// A bond between atoms 1.4 Å apart was counted. Atoms nearer than any bond clash, and make no other bonds either;
+/// metals do not clash with what binds them.
+#[test]
+fn clashes_are_no_bonds() {
+    let lysine = |x: f64| {
+        [
+            ("CE", "LYS", 'A', 10, "C", [x - 1.5, 0.0, 0.0]),
+            ("NZ", "LYS", 'A', 10, "N", [x, 0.0, 0.0]),
+        ]
+    };
+    let aspartate = molecule(&[
+        ("CG", "ASP", 'B', 7, "C", [1.25, 0.0, 0.0]),
+        ("OD1", "ASP", 'B', 7, "O", [0.0, 0.0, 0.0]),
+    ]);
+    let held = |first: &Molecule| {
+        let found = Interface::of([first, &aspartate], 7.0);
+        let bond = found.pairs[0].hydrogen_bond_distance;
+        (found.hydrogen_bonds, found.salt_bridges, bond)
+    };
+    assert_eq!(held(&molecule(&lysine(-1.4))), (0, 0, None));
+    let [carbon, nitrogen] = lysine(-2.9);
+    let near = |element: &'static str| {
+        let other = ("X", "UNL", 'A', 11, element, [0.0, 2.0, 0.0]);
+        molecule(&[carbon, nitrogen, other])
+    };
+    assert_eq!(held(&near("C")), (0, 0, None));
+    assert_eq!(held(&near("ZN")).0, 1);
+}
+
+/// ARG beside O6 of a guanine was a salt bridge, since the nucleotide has a charge: its phosphate has. So it was with
+/// the ester oxygen of phosphoserine, the sugar, and the oxygens of a terminus under CHARMM's names.
+#[test]
+fn salt_bridges_are_of_charged_atoms() {
+    let arginine = molecule(&[
+        ("CZ", "ARG", 'A', 10, "C", [-4.3, 0.0, 0.0]),
+        ("NH1", "ARG", 'A', 10, "N", [-3.0, 0.0, 0.0]),
+    ]);
+    let is_bridge = |residue, name| {
+        let atoms = [
+            ("P", residue, 'B', 7, "P", [9.0, 0.0, 0.0]),
+            (name, residue, 'B', 7, "O", [0.0, 0.0, 0.0]),
+        ];
+        Interface::of([&arginine, &molecule(&atoms)], 7.0).salt_bridges == 1
+    };
+    for (residue, charged, others) in [
+        (
+            " DG",
+            &["OP1", "OP2"] as &[&str],
+            &["O6", "O4'", "O5'"] as &[&str],
+        ),
+        ("  A", &["O1P"], &["O2'"]),
+        ("ASP", &["OD1", "OD2"], &["O", "OT1"]),
+    ] {
+        assert!(
+            charged.iter().all(|name| is_bridge(residue, name)),
+            "{residue}"
+        );
+        assert!(
+            !others.iter().any(|name| is_bridge(residue, name)),
+            "{residue}"
+        );
+    }
+    let modified = |residue, name| {
+        let atom = |name, element, at| (name, residue, 'B', 7, element, at);
+        let atoms = [
+            atom("N", "N", [20.0, 0.0, 0.0]),
+            atom("CA", "C", [21.4, 0.0, 0.0]),
+            atom("C", "C", [22.8, 0.0, 0.0]),
+            atom(name, "O", [0.0, 0.0, 0.0]),
+        ];
+        Interface::of([&arginine, &molecule(&atoms)], 7.0).salt_bridges == 1
+    };
+    for (residue, name, expected) in [
+        ("SEP", "O1P", true),
+        ("SEP", "OG", false),
+        ("TPO", "OG1", false),
+        ("PTR", "O3P", true),
+        ("PTR", "OH", false),
+        ("TYS", "O2", true),
+    ] {
+        assert_eq!(modified(residue, name), expected, "{residue} {name}");
+    }
+}
+
+/// The last residue's carboxylate under CHARMM's names took the charge of its lysine away.
+#[test]
+fn termini_leave_side_chains_their_charge() {
+    let lysine = molecule(&[
+        ("N", "LYS", 'A', 10, "N", [-9.0, 0.0, 0.0]),
+        ("CA", "LYS", 'A', 10, "C", [-9.0, 1.4, 0.0]),
+        ("C", "LYS", 'A', 10, "C", [-9.0, 2.9, 0.0]),
+        ("OT1", "LYS", 'A', 10, "O", [-9.0, 3.5, 1.0]),
+        ("OT2", "LYS", 'A', 10, "O", [-9.0, 3.5, -1.0]),
+        ("CE", "LYS", 'A', 10, "C", [-4.4, 0.0, 0.0]),
+        ("NZ", "LYS", 'A', 10, "N", [-2.9, 0.0, 0.0]),
+    ]);
+    let glutamate = molecule(&[("OE1", "GLU", 'B', 7, "O", [0.0, 0.0, 0.0])]);
+    let found = Interface::of([&lysine, &glutamate], 7.0);
+    assert_eq!(found.salt_bridges, 1);
 }
 
 /// Two equal atoms take the same from each other, but for the points by which areas are counted.

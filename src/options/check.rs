@@ -159,6 +159,9 @@ impl DockOptions {
             let value = restraints.restraints_need.to_string();
             return Err(refused("restraints-need", value, bound));
         }
+        if restraints.tbl_bounds != default.tbl_bounds {
+            return Err(refused("tbl-bounds", name_of(restraints.tbl_bounds), bound));
+        }
         match restraints.crosslink {
             Some(crosslink) => Err(refused("crosslink", crosslink.to_string(), bound)),
             None => Ok(()),

@@ -167,7 +167,7 @@ mod tests {
         --alpha=3 --resolution=6 --pass-length=15 --spacing=0.3333333333333333 --tolerance=1e-3 --core-weight=2 \
         --electrostatics-weight=0 --contact-weight=1e5 --fine-contact-weight=1 --atom-pair-weight=2 --relaxed-weight=0 \
         --unresolved-weight=1 --termini-weight=0 --ph=5.5 --restraint-weight=3 --antibody=whole --block-receptor=A:1-3 \
-        --block-ligand=B --active-weight=1 --active-receptor=A:5 --active-ligand=B:7,9 --restraints-need=60% --crosslink=BS3 --violation-weight=9 --interface-receptor=bfactor --interface-ligand=bfactor --interface-weight=1 --membrane=-15,15 --membrane-weight=2 --peptidase-weight=0 --rotations=17 \
+        --block-ligand=B --active-weight=1 --active-receptor=A:5 --active-ligand=B:7,9 --restraints-need=60% --tbl-bounds=written --crosslink=BS3 --violation-weight=9 --interface-receptor=bfactor --interface-ligand=bfactor --interface-weight=1 --membrane=-15,15 --membrane-weight=2 --peptidase-weight=0 --rotations=17 \
         --fine-rotations=15deg --fine-share=0.5 --precision=double --engine=gpu --per-rotation=1 --poses=9 --refine=0 --symmetry=C3 \
         --cluster-radius=0 --sharp=off --no-cluster --write-top=0 --diagnostics --no-report";
 

@@ -10,7 +10,7 @@ use super::values::number;
 use crate::predictions::PredictionSource;
 use crate::priors::membrane::MembraneChoice;
 use crate::priors::peptidase;
-use crate::restraints::{Crosslink, Needed, RestraintFile, RestraintFileError};
+use crate::restraints::{Crosslink, Needed, RestraintFile, RestraintFileError, TblBounds};
 
 /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
 #[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,6 +56,12 @@ pub struct RestraintOptions {
     /// Ask for fewer than all if some may be false.
     #[arg(long, value_name = "COUNT|SHARE", default_value_t = Needed::default())]
     pub restraints_need: Needed,
+    /// Upper bounds of a .tbl: widened for the hydrogens that they count, or as written.
+    ///
+    /// HADDOCK sums over hydrogens, which are dropped here. widened: 2 Å is 2.78 Å between heavy atoms. Selections
+    /// without hydrogens, such as name CA, keep their bounds.
+    #[arg(long, value_enum, value_name = "widened|written", hide_possible_values = true, default_value_t = TblBounds::Widened)]
+    pub tbl_bounds: TblBounds,
     /// Reagent of cross-links: DSS or BS3.
     ///
     /// Rows of --restraints without an upper bound get that of the reagent, between CA atoms. DSS and BS3: 30 Å.

@@ -61,14 +61,26 @@ pub enum PredictionFault {
         /// 1-based line of that row.
         first: usize,
     },
-    /// B values outside the range of probabilities.
-    #[error("the B values run from {low} to {high}, and probabilities from 0 to 1")]
+    /// B values of amino acids outside the range of probabilities.
+    #[error(
+        "the B values of {outside} of {of} amino acids are no probabilities, which run from 0 to 1: {residues}; all \
+         run from {low} to {high}"
+    )]
     BValues {
+        /// How many amino acids.
+        outside: usize,
+        /// The first of them, as `A:57`.
+        residues: String,
+        /// How many amino acids there are.
+        of: usize,
         /// The smallest.
         low: f64,
         /// The largest.
         high: f64,
     },
+    /// A molecule without amino acids, whose B values are asked for.
+    #[error("there is no amino acid, and only those have predictions as B values")]
+    NoAminoAcid,
     /// Predictions that say nothing.
     #[error("all residues have the same probability, which says nothing")]
     AllEqual,
@@ -93,7 +105,7 @@ impl PredictionFault {
                 "leave out rows of residues that the file of the molecule lacks, and number as it does".into()
             }
             Self::Repeated { .. } => "leave out one of the two rows".into(),
-            Self::BValues { .. } => {
+            Self::BValues { .. } | Self::NoAminoAcid => {
                 "give the predictions as a CSV table, or a file with probabilities as B values: those of crystals and \
                  the confidence of predicted models are no predictions of the interface"
                     .into()

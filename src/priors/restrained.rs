@@ -7,6 +7,7 @@ use knotdock_structures::molecule::Molecule;
 
 use crate::error::SearchError;
 use crate::options::RestraintOptions;
+use crate::restraints::FileRestraints;
 
 /// Distance restraints with how many of them a pose has to satisfy, predictions of the interface, and a membrane.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -15,6 +16,10 @@ pub struct Restrained {
     pub distances: DistanceRestraints,
     /// Their names, in the same order.
     pub names: Vec<String>,
+    /// Restraints that are left out, since they are, or may be, within one molecule.
+    pub within_one_molecule: usize,
+    /// Least and most that upper bounds are widened by for hydrogens, in Å; `None` if none is.
+    pub widened: Option<[f64; 2]>,
     /// Residues of receptor and ligand with predictions.
     pub predicted: [Vec<PredictedResidue>; 2],
     /// A membrane of one side, which the other is to stay out of.
@@ -50,12 +55,22 @@ impl Restrained {
                 ..Self::default()
             });
         };
-        let list = file.between(molecules, options.crosslink)?;
+        let FileRestraints {
+            list,
+            within_one_molecule,
+        } = file.between(molecules, options.crosslink, options.tbl_bounds)?;
         let (needed, count) = (options.restraints_need, list.len());
         let needed = needed
             .of(count)
             .ok_or(SearchError::RestraintsNeed { needed, count })?;
+        let widened = list
+            .iter()
+            .map(|restraint| restraint.upper - restraint.written_upper)
+            .filter(|more| *more > 0.0);
+        let least = widened.clone().reduce(f64::min);
         Ok(Self {
+            widened: least.zip(widened.reduce(f64::max)).map(Into::into),
+            within_one_molecule,
             distances: DistanceRestraints {
                 list: list.iter().map(|restraint| restraint.distance()).collect(),
                 needed,

@@ -152,9 +152,15 @@ pub enum RestraintFault {
         /// A chain of each, in words.
         chains: [String; 2],
     },
-    /// Two selections in one molecule.
-    #[error("both selections are of the {0}")]
-    OneSide(&'static str),
+    /// Nothing but restraints within one molecule: so many.
+    #[error(
+        "{}, which docking does not change",
+        match .0 {
+            1 => "the restraint is within one molecule".to_owned(),
+            count => format!("all {count} restraints are within one molecule"),
+        }
+    )]
+    WithinOneMolecule(usize),
 }
 
 impl RestraintFault {
@@ -213,7 +219,7 @@ impl RestraintFault {
                 "give the restraints as a CSV table, whose columns say the side, or rename the chain of one molecule"
             }
             Self::BothSides { .. } => "name the chain of one of the two, as in `segid A`",
-            Self::OneSide(_) => {
+            Self::WithinOneMolecule(_) => {
                 "select atoms of the receptor in one and of the ligand in the other: rigid docking keeps distances \
                  within a molecule"
             }

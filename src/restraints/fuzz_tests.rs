@@ -4,16 +4,23 @@ use knotdock_structures::molecule::Molecule;
 use proptest::prelude::*;
 
 use super::error::Located;
-use super::{CROSSLINKS, NamedRestraint, parse};
+use super::{CROSSLINKS, NamedRestraint, TblBounds, parse};
 use crate::test_molecules::molecules;
 
 /// Reads bytes in both formats; what is read must be usable.
 fn reads_or_refuses(bytes: &[u8]) {
     let [receptor, ligand] = molecules();
     for (is_tbl, crosslink) in [(true, None), (false, None), (false, Some(CROSSLINKS[0]))] {
-        match parse(bytes.to_vec(), is_tbl, [&receptor, &ligand], crosslink) {
+        let bounds = TblBounds::Widened;
+        match parse(
+            bytes.to_vec(),
+            is_tbl,
+            [&receptor, &ligand],
+            crosslink,
+            bounds,
+        ) {
             Ok(restraints) => {
-                for restraint in restraints {
+                for restraint in restraints.list {
                     check(&restraint, [&receptor, &ligand]);
                 }
             }
@@ -144,7 +151,9 @@ proptest! {
             expected.push(([atoms(&receptor, own), atoms(&ligand, other)], [lower, target, upper]));
         }
         for (is_tbl, text) in [(true, statements), (false, table)] {
-            let read = parse(text.into_bytes(), is_tbl, [&receptor, &ligand], None).unwrap();
+            let bounds = TblBounds::Written;
+            let read = parse(text.into_bytes(), is_tbl, [&receptor, &ligand], None, bounds);
+            let read = read.unwrap().list;
             prop_assert_eq!(read.len(), expected.len());
             for (restraint, (pair, bounds)) in read.iter().zip(&expected) {
                 check(restraint, [&receptor, &ligand]);

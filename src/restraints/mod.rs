@@ -5,7 +5,8 @@
 //! - Distances are in Å. Atoms are indices into the atoms of the receptor and of the ligand, in that order.
 //! - A restraint is on the effective distance (sum of d^-6)^(-1/6) over all its pairs of atoms. It is satisfied where
 //!   lower <= effective distance <= upper.
-//! - A residue stands for its heavy atoms. Hydrogens count where nothing else is named, as in `name HN`.
+//! - A residue stands for its heavy atoms. Hydrogens count where nothing else is named, as in `name HN`. Bounds of a
+//!   `.tbl` are of all atoms, and are widened for that.
 //!
 //! # Files
 //!
@@ -28,7 +29,7 @@ mod fuzz_tests;
 pub use self::crosslink::{CROSSLINKS, Crosslink, UnknownCrosslink};
 pub use self::error::{RestraintFault, RestraintFileError};
 pub use self::needed::{Needed, NeededError};
-pub use self::restraint::NamedRestraint;
+pub use self::restraint::{FileRestraints, NamedRestraint, TblBounds};
 
 use std::path::{Path, PathBuf};
 
@@ -74,23 +75,12 @@ impl RestraintFile {
         &self,
         molecules: [&Molecule; 2],
         crosslink: Option<Crosslink>,
-    ) -> Result<Vec<NamedRestraint>, RestraintFileError> {
+        bounds: TblBounds,
+    ) -> Result<FileRestraints, RestraintFileError> {
         let bytes = self.text.clone().into_bytes();
-        parse(bytes, is_tbl(&self.path), molecules, crosslink)
+        parse(bytes, is_tbl(&self.path), molecules, crosslink, bounds)
             .map_err(|located| located.of(&self.path))
     }
-}
-
-/// Reads the restraints of a file between the molecules receptor and ligand.
-///
-/// # Errors
-/// As [`RestraintFile::read`] and [`RestraintFile::between`].
-pub fn read(
-    path: &Path,
-    molecules: [&Molecule; 2],
-    crosslink: Option<Crosslink>,
-) -> Result<Vec<NamedRestraint>, RestraintFileError> {
-    RestraintFile::read(path)?.between(molecules, crosslink)
 }
 
 /// Whether the name of a file says that it holds assign statements.
@@ -105,16 +95,20 @@ fn parse(
     is_tbl: bool,
     molecules: [&Molecule; 2],
     crosslink: Option<Crosslink>,
-) -> Result<Vec<NamedRestraint>, Located> {
+    bounds: TblBounds,
+) -> Result<FileRestraints, Located> {
     let bytes = with_line_feeds(bytes);
     let restraints = match (is_tbl, crosslink) {
         (true, Some(crosslink)) => Err(Located::in_file(RestraintFault::CrosslinkOfTbl(
             crosslink.name,
         ))),
-        (true, None) => tbl::parse(bytes, molecules),
-        (false, _) => table::parse(bytes, molecules, crosslink),
+        (true, None) => tbl::parse(bytes, molecules, bounds),
+        (false, _) => table::parse(bytes, molecules, crosslink).map(|list| FileRestraints {
+            list,
+            within_one_molecule: 0,
+        }),
     }?;
-    if restraints.is_empty() {
+    if restraints.list.is_empty() {
         return Err(Located::in_file(RestraintFault::NoRestraint));
     }
     Ok(restraints)
@@ -148,7 +142,9 @@ mod tests {
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
         let [receptor, ligand] = molecules();
-        let read = read(&path, [&receptor, &ligand], None);
+        let read = RestraintFile::read(&path)
+            .and_then(|file| file.between([&receptor, &ligand], None, TblBounds::Written))
+            .map(|restraints| restraints.list);
         if let Err(error) = &read {
             assert_eq!(error.path, path);
             assert!(!error.remedy().is_empty());
@@ -211,8 +207,7 @@ mod tests {
                 .fault,
             RestraintFault::NoRestraint
         );
-        let [receptor, ligand] = molecules();
-        let error = read(Path::new("nowhere.csv"), [&receptor, &ligand], None).unwrap_err();
+        let error = RestraintFile::read(Path::new("nowhere.csv")).unwrap_err();
         assert_eq!(
             (error.line, error.path.as_path()),
             (None, Path::new("nowhere.csv"))
@@ -224,7 +219,7 @@ mod tests {
         let [receptor, ligand] = molecules();
         let text = b"assign (segid A) (segid B) 4 4 4".to_vec();
         let dss = Some(CROSSLINKS[0]);
-        let error = parse(text, true, [&receptor, &ligand], dss).unwrap_err();
+        let error = parse(text, true, [&receptor, &ligand], dss, TblBounds::Written).unwrap_err();
         assert_eq!(error.fault, RestraintFault::CrosslinkOfTbl("DSS"));
     }
 }

@@ -1,8 +1,30 @@
 //! One restraint, and how much of them is kept.
 
+use clap::ValueEnum;
 use knotdock_scoring::terms::pose::DistanceRestraint;
+use serde::{Deserialize, Serialize};
 
 use crate::restraints::error::RestraintFault;
+
+/// The restraints of a file between two molecules.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct FileRestraints {
+    /// Those between the two.
+    pub list: Vec<NamedRestraint>,
+    /// How many more are, or may be, within one of them, and are left out: rigid docking keeps their distances.
+    pub within_one_molecule: usize,
+}
+
+/// How upper bounds of a `.tbl` are taken.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum TblBounds {
+    /// Widened for the hydrogens that HADDOCK counts and that are not read.
+    #[default]
+    Widened,
+    /// As written.
+    Written,
+}
 
 /// A restraint on the effective distance between atoms of the receptor and atoms of the ligand.
 #[derive(Clone, Debug, PartialEq)]
@@ -20,6 +42,8 @@ pub struct NamedRestraint {
     pub target: Option<f64>,
     /// Largest effective distance that satisfies it, in Å.
     pub upper: f64,
+    /// Largest effective distance as the file gives it, in Å: of all atoms in a `.tbl`.
+    pub written_upper: f64,
 }
 
 impl NamedRestraint {

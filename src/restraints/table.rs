@@ -119,6 +119,7 @@ impl<'a> Rows<'a> {
             lower: bounds.lower,
             target: bounds.target,
             upper: bounds.upper,
+            written_upper: bounds.upper,
         });
         Ok(())
     }

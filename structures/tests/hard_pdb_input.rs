@@ -5,7 +5,10 @@
 use std::io::Write;
 
 use crate::pdb_text::{ATOM, Line, names, read_bytes, read_text, text};
-use knotdock_structures::molecule::{Format, InputSpec, ReadError, ReadOptions, read};
+use knotdock_structures::molecule::{
+    Format, InputSpec, Partner, ReadError, ReadOptions, complex_format, read, write_complex,
+    write_renamed,
+};
 
 #[test]
 fn records_that_break_pdbtbx_are_filtered_out() {
@@ -86,6 +89,71 @@ fn only_the_first_model_is_read() {
     let parts = read_text(&format!("{atom}END\n{other}END\n")).unwrap();
     assert_eq!(parts.atoms.len(), 2);
     assert_eq!(parts.report.altered.models_ignored, 0);
+}
+
+/// An atom without a chain, of a segment.
+fn of_segment(segid: &str, x: f64) -> String {
+    let line = Line {
+        chain: ' ',
+        x,
+        ..ATOM
+    };
+    format!("{}      {segid:<4}\n", &line.text()[..66])
+}
+
+/// CNS, HADDOCK and CHARMM leave the chain blank and name molecules by the segid: two of them were one chain, so that
+/// neither could be selected or restrained.
+#[test]
+fn segids_are_chains_if_a_file_has_none() {
+    let chains = |text: &str| -> Vec<String> {
+        let molecule = read_text(text).unwrap();
+        molecule.atoms.into_iter().map(|atom| atom.chain).collect()
+    };
+    let two = of_segment("A", 1.0) + &of_segment("PROB", 5.0);
+    assert_eq!(chains(&two), ["A", "PROB"]);
+    assert_eq!(
+        read_text(&two).unwrap().report.altered.chains_from_segids,
+        2
+    );
+    let picked = read_bytes("x.pdb", two.as_bytes(), ":PROB:1").unwrap();
+    assert_eq!(picked.atoms[0].position[0], 5.0);
+    // All or none, as far as the file goes: models that are not read count, too.
+    let (mixed, atom) = (format!("{two}{}", ATOM.text()), of_segment("B", 9.0));
+    assert_eq!(chains(&mixed), ["", "", "A"]);
+    assert_eq!(chains(&(atom.clone() + &of_segment("", 1.0))), ["B", ""]);
+    let models = format!("MODEL 1\n{atom}ENDMDL\nMODEL 2\n{}ENDMDL\n", ATOM.text());
+    assert_eq!(chains(&models), [""]);
+    // Parts of a complex with END between have segids of their own, and frames of a trajectory the same one.
+    let parts = format!("{atom}END\n{}END\n", of_segment("C", 1.0));
+    assert_eq!(chains(&parts), ["B", "C"]);
+    assert_eq!(chains(&format!("{atom}END\n{atom}END\n")), ["B"]);
+}
+
+/// Segids of several letters stay whole in mmCIF. In PDB each gets a letter, which the remarks give.
+#[test]
+fn long_segids_are_written() {
+    let text = of_segment("PROA", 1.0) + &of_segment("PROB", 5.0) + &of_segment("A", 9.0);
+    let molecule = read_text(&text).unwrap();
+    let written = |format: Format| {
+        let mut bytes = Vec::new();
+        write_renamed(&mut bytes, format, &molecule, &[]).unwrap();
+        let name = format!("y.{}", format.extension());
+        let again = read_bytes(&name, &bytes, "").unwrap();
+        let chains: Vec<String> = again.atoms.into_iter().map(|atom| atom.chain).collect();
+        (chains.join(" "), String::from_utf8(bytes).unwrap())
+    };
+    assert_eq!(written(Format::Mmcif).0, "PROA PROB A");
+    let (chains, pdb) = written(Format::Pdb);
+    assert_eq!(chains, "B C A");
+    for remark in ["chain B was PROA", "chain C was PROB"] {
+        assert!(pdb.contains(remark), "{pdb}");
+    }
+    assert_eq!(complex_format(&[&molecule, &molecule]), Format::Pdb);
+    let mut bytes = Vec::new();
+    let map = write_complex(&mut bytes, Format::Pdb, &[&molecule], &[]).unwrap();
+    assert_eq!(map.written(Partner::Receptor, "PROB"), "C");
+    let pdb = String::from_utf8(bytes).unwrap();
+    assert!(pdb.contains("chain C is receptor chain PROB"), "{pdb}");
 }
 
 #[test]

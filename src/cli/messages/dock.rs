@@ -223,6 +223,17 @@ pub fn known_text(sides: &[&str], known: &Restrained) -> Vec<String> {
             }
             (needed, count) => format!("{needed} of {count} distance restraints to satisfy"),
         });
+        if let Some([least, most]) = known.widened {
+            let by = match (format!("{least:.1}"), format!("{most:.1}")) {
+                (least, most) if least == most => least,
+                (least, most) => format!("{least} to {most}"),
+            };
+            lines.push(format!(
+                "upper bounds widened by {by} Å for hydrogens, which the .tbl counts (--tbl-bounds written leaves that \
+                 out)"
+            ));
+        }
+        lines.extend(within_text(known));
     }
     for (side, residues) in sides.iter().zip(&known.predicted) {
         if !residues.is_empty() {
@@ -238,6 +249,18 @@ pub fn known_text(sides: &[&str], known: &Restrained) -> Vec<String> {
         ));
     }
     lines
+}
+
+/// Restraints that are left out, since docking does not change them.
+fn within_text(known: &Restrained) -> Option<String> {
+    let within = known.within_one_molecule;
+    let all = within + known.distances.list.len();
+    let is = if within == 1 { "is" } else { "are" };
+    (within > 0).then(|| {
+        format!(
+            "{within} of {all} restraints {is} within one molecule, which docking does not change"
+        )
+    })
 }
 
 /// Flexible regions of each side that cost poses score: unresolved segments and residues near termini.

@@ -101,6 +101,7 @@ const PAIRS: [&str; 11] = [
     "name_2",
     "distance",
     "hydrogen_bonds",
+    "hydrogen_bond_distance",
     "salt_bridge",
 ];
 
@@ -116,11 +117,12 @@ pub fn write_pairs(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Res
             let [a, b] = &pair.residues;
             let distance = number(pair.distance);
             let bonds = pair.hydrogen_bonds.to_string();
+            let bond = pair.hydrogen_bond_distance.map(number).unwrap_or_default();
             let bridge = pair.salt_bridge.to_string();
             let model = row.model.to_string();
             table.row([
                 &row.file, &model, &a.chain, &a.number, &a.name, &b.chain, &b.number, &b.name,
-                &distance, &bonds, &bridge,
+                &distance, &bonds, &bond, &bridge,
             ])?;
         }
     }

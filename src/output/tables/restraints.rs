@@ -6,9 +6,10 @@ use crate::dock::outcome::RankedPose;
 use crate::dock::plan::DockPlan;
 use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::{Column, number};
+use crate::priors::restrained::Restrained;
 
 /// Columns of `restraints.csv`.
-const HEADER: [&str; 4] = ["rank", "restraint", "distance", "met"];
+const HEADER: [&str; 6] = ["rank", "restraint", "distance", "lower", "upper", "met"];
 
 /// The effective distance (Å) of each restraint at a pose, and whether it is satisfied.
 fn distances(plan: &DockPlan, pose: &RankedPose) -> impl Iterator<Item = (f64, bool)> {
@@ -36,7 +37,8 @@ pub fn met(plan: &DockPlan, poses: &[RankedPose]) -> Option<Column> {
     })
 }
 
-/// Writes `restraints.csv`: a row for each pose and restraint, with the effective distance in Å.
+/// Writes `restraints.csv`: a row for each pose and restraint, with the effective distance and its bounds in
+/// Å.
 ///
 /// # Errors
 /// Those of the stream.
@@ -48,9 +50,22 @@ pub fn write_to(
     let mut table = TableWriter::new(stream);
     table.row(HEADER)?;
     for (rank, pose) in (1..).zip(poses) {
-        for (name, (distance, met)) in plan.restraints.names.iter().zip(distances(plan, pose)) {
-            let (rank, distance) = (rank.to_string(), number(distance));
-            table.row([&rank, name, &distance, &met.to_string()])?;
+        let Restrained {
+            distances: known,
+            names,
+            ..
+        } = &plan.restraints;
+        let restraints = names.iter().zip(&known.list);
+        for ((name, restraint), (distance, met)) in restraints.zip(distances(plan, pose)) {
+            let [distance, lower, upper] = [distance, restraint.lower, restraint.upper].map(number);
+            table.row([
+                &rank.to_string(),
+                name,
+                &distance,
+                &lower,
+                &upper,
+                &met.to_string(),
+            ])?;
         }
     }
     table.flush()

@@ -27,6 +27,7 @@ fn a_row_is_a_restraint() {
         lower: 2.0,
         target: Some(5.0),
         upper: 8.5,
+        written_upper: 8.5,
     };
     assert_eq!(read, [expected]);
 }

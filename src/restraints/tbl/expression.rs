@@ -12,11 +12,10 @@
 //! So `not` binds most and `or` least, as in CNS. `atom` has a chain, a residue and a name of an atom. Names may have
 //! wildcards unless they are in quotes.
 
-use std::collections::BTreeSet;
-
-use knotdock_structures::molecule::Atom;
+use std::collections::{BTreeMap, BTreeSet};
 
 use crate::restraints::error::{Located, RestraintFault};
+use crate::restraints::tbl::atom_index::{AtomIndex, ResidueNumber};
 use crate::restraints::tbl::name_pattern::NamePattern;
 use crate::restraints::tbl::tokens::{Place, Token, Tokens};
 
@@ -45,45 +44,92 @@ pub(super) enum ResidueTest {
     /// Number and insertion code as one text.
     Text(NamePattern),
     /// From one to another, each with its insertion code: none comes before `A`.
-    Range([(i64, Option<char>); 2]),
+    Range([ResidueNumber; 2]),
+}
+
+/// What tests of `name` and `hydrogen` are applied to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tested {
+    /// Each atom.
+    Atoms,
+    /// Of each atom the hydrogens that it may carry, one of which is enough.
+    Hydrogens,
+    /// Each atom, whatever its name.
+    Residues,
 }
 
 impl Expression {
-    /// Whether an atom is selected.
-    pub(super) fn holds(&self, atom: &Atom) -> bool {
-        self.evaluate(atom, true)
-    }
-
-    /// Whether an atom is selected if every name of an atom were the right one.
-    pub(super) fn holds_but_for_names(&self, atom: &Atom) -> bool {
-        self.evaluate(atom, false)
-    }
-
-    fn evaluate(&self, atom: &Atom, by_name: bool) -> bool {
+    /// Whether each atom is selected.
+    pub(super) fn select(&self, index: &AtomIndex, tested: Tested) -> Vec<bool> {
+        let named = |pattern: &NamePattern, names: &BTreeMap<&str, Vec<usize>>| {
+            let names = names.iter().filter(|(name, _)| pattern.holds(name));
+            index.at(names.map(|(_, places)| places))
+        };
+        let all = || vec![true; index.atoms.len()];
         match self {
-            Self::All => true,
-            Self::Hydrogen => atom.is_hydrogen(),
-            Self::Chain(pattern) => pattern.holds(&atom.chain),
-            Self::ResidueName(pattern) => pattern.holds(&atom.residue_name),
-            Self::Residue(test) => test.holds(atom),
-            Self::Name(pattern) => !by_name || pattern.holds(&atom.name),
-            Self::Not(inner) => !inner.evaluate(atom, by_name),
-            Self::And(parts) => parts.iter().all(|part| part.evaluate(atom, by_name)),
-            Self::Or(parts) => parts.iter().any(|part| part.evaluate(atom, by_name)),
+            Self::All => all(),
+            Self::Hydrogen if tested == Tested::Hydrogens => all(),
+            Self::Hydrogen => index.atoms.iter().map(|atom| atom.is_hydrogen()).collect(),
+            Self::Chain(pattern) => named(pattern, &index.chains),
+            Self::ResidueName(pattern) => named(pattern, &index.residue_names),
+            Self::Residue(test) => test.select(index),
+            Self::Name(pattern) => match tested {
+                Tested::Atoms => named(pattern, &index.names),
+                Tested::Residues => all(),
+                Tested::Hydrogens => {
+                    let holds = |names: &[String]| names.iter().any(|name| pattern.holds(name));
+                    let names = index.hydrogens.iter().zip(index.names.values());
+                    let names = names.filter(|((_, hydrogens), _)| holds(hydrogens));
+                    index.at(names.map(|(_, places)| places))
+                }
+            },
+            Self::Not(inner) => {
+                let mut chosen = inner.select(index, tested);
+                chosen.iter_mut().for_each(|chosen| *chosen = !*chosen);
+                chosen
+            }
+            Self::And(parts) => combined(parts, |part| part.select(index, tested), |a, b| a & b),
+            Self::Or(parts) => combined(parts, |part| part.select(index, tested), |a, b| a | b),
         }
     }
 }
 
-impl ResidueTest {
-    fn holds(&self, atom: &Atom) -> bool {
-        let (number, insertion) = (atom.residue_number, atom.insertion_code);
-        match self {
-            Self::Number(own) => (*own, None) == (number, insertion),
-            Self::Text(pattern) => {
-                let insertion = insertion.map_or_else(String::new, String::from);
-                pattern.holds(&format!("{number}{insertion}"))
+/// The sets of at least one part, combined atom by atom.
+fn combined(
+    parts: &[Expression],
+    select: impl Fn(&Expression) -> Vec<bool>,
+    combine: fn(bool, bool) -> bool,
+) -> Vec<bool> {
+    let mut chosen = Vec::new();
+    for (place, part) in parts.iter().enumerate() {
+        let of_part = select(part);
+        if place == 0 {
+            chosen = of_part;
+        } else {
+            for (chosen, other) in chosen.iter_mut().zip(of_part) {
+                *chosen = combine(*chosen, other);
             }
-            Self::Range([first, last]) => (*first..=*last).contains(&(number, insertion)),
+        }
+    }
+    chosen
+}
+
+impl ResidueTest {
+    fn select(&self, index: &AtomIndex) -> Vec<bool> {
+        let residues = &index.residues;
+        match self {
+            Self::Number(number) => {
+                let residue = residues.get(&(*number, None)).into_iter();
+                index.at(residue.map(|(_, places)| places))
+            }
+            Self::Text(pattern) => {
+                let residues = residues.values().filter(|(text, _)| pattern.holds(text));
+                index.at(residues.map(|(_, places)| places))
+            }
+            Self::Range([first, last]) => {
+                let residues = residues.range(*first..=*last);
+                index.at(residues.map(|(_, (_, places))| places))
+            }
         }
     }
 }
@@ -263,7 +309,7 @@ fn joined(mut parts: Vec<Expression>, join: fn(Vec<Expression>) -> Expression) -
 }
 
 /// A residue's number with its insertion code: `52` or `52A`.
-fn number(text: &str) -> Option<(i64, Option<char>)> {
+fn number(text: &str) -> Option<ResidueNumber> {
     if let Ok(number) = text.parse() {
         return Some((number, None));
     }

@@ -11,6 +11,10 @@
 //! - Two selections of atoms, one in each molecule in either order, and three distances d, minus and plus: the
 //!   effective distance lies from d - minus to d + plus.
 //! - `or` with two selections adds an alternative, which counts towards the same effective distance.
+//! - A statement that is within one molecule, or may be by one of its alternatives, is left out: rigid docking keeps
+//!   its distance.
+//! - The upper bound is widened for the hydrogens that are not read ([`hydrogens`]), unless the caller wants it as
+//!   written.
 //! - What ARIA writes behind the distances (`peak`, `volume`, `ppm1` ...) is passed over. A `weight` must be 1.
 //! - `segid` and `chain` are the chain. `resid 52A` has an insertion code. Case counts in names of chains where a chain
 //!   is called so.
@@ -18,7 +22,9 @@
 //!
 //! Sources: the CNS language tutorial and the X-PLOR manual, NOE statement.
 
+mod atom_index;
 mod expression;
+mod hydrogens;
 mod name_pattern;
 mod sides;
 #[cfg(test)]
@@ -30,12 +36,13 @@ use std::collections::HashSet;
 use knotdock_structures::molecule::Molecule;
 
 use self::expression::{Selections, unexpected};
-use self::sides::{SIDES, Sides};
+use self::hydrogens::widened;
+use self::sides::{Selected, Sides};
 use self::tokens::{Place, Token};
 use crate::named_columns::shortened;
 use crate::restraints::bounds::{Bounds, distance};
 use crate::restraints::error::{Located, RestraintFault};
-use crate::restraints::restraint::{NamedRestraint, SelectedAtoms};
+use crate::restraints::restraint::{FileRestraints, NamedRestraint, SelectedAtoms, TblBounds};
 
 /// What may stand behind the distances with a number, and says nothing of them.
 const PASSED_OVER: [&str; 6] = ["peak", "spectrum", "volume", "ppm1", "ppm2", "cv"];
@@ -44,7 +51,8 @@ const PASSED_OVER: [&str; 6] = ["peak", "spectrum", "volume", "ppm1", "ppm2", "c
 pub(super) fn parse(
     bytes: Vec<u8>,
     molecules: [&Molecule; 2],
-) -> Result<Vec<NamedRestraint>, Located> {
+    bounds: TblBounds,
+) -> Result<FileRestraints, Located> {
     let text = String::from_utf8(bytes).map_err(|_| {
         Located::in_file(RestraintFault::Unreadable(
             "it is not text in UTF-8".to_owned(),
@@ -55,9 +63,10 @@ pub(super) fn parse(
     let mut statements = Statements {
         selections: Selections::new(text, sides.all_chains()),
         sides,
+        bounds,
         selected: SelectedAtoms::default(),
     };
-    let mut restraints = Vec::new();
+    let (mut list, mut within) = (Vec::new(), Vec::new());
     while let Some((token, place)) = statements.selections.tokens.next()? {
         if !token.is_keyword("assign") {
             return Err(unexpected(
@@ -66,23 +75,38 @@ pub(super) fn parse(
                 place,
             ));
         }
-        let name = format!("restraint {}", restraints.len() + 1);
-        restraints.push(statements.assign(name, place)?);
+        let name = format!("restraint {}", list.len() + within.len() + 1);
+        match statements.assign(name, place)? {
+            Some(restraint) => list.push(restraint),
+            None => within.push(place),
+        }
     }
-    Ok(restraints)
+    match within.first() {
+        Some(place) if list.is_empty() => {
+            Err(place.fault(RestraintFault::WithinOneMolecule(within.len())))
+        }
+        _ => Ok(FileRestraints {
+            list,
+            within_one_molecule: within.len(),
+        }),
+    }
 }
 
 /// Reads statements one by one.
 struct Statements<'a> {
     selections: Selections<'a>,
     sides: Sides<'a>,
+    bounds: TblBounds,
     selected: SelectedAtoms,
 }
 
+/// Atoms of receptor and ligand, and how many of the two sets have hydrogens that count.
+type Pair = ([Vec<usize>; 2], usize);
+
 impl Statements<'_> {
-    /// The statement behind `assign`, which is at `place`.
-    fn assign(&mut self, name: String, place: Place) -> Result<NamedRestraint, Located> {
-        let mut pairs = vec![self.pair()?];
+    /// The statement behind `assign`, which is at `place`; `None` if it is, or may be, within one molecule.
+    fn assign(&mut self, name: String, place: Place) -> Result<Option<NamedRestraint>, Located> {
+        let mut alternatives = vec![self.pair()?];
         let bounds = Bounds::about(
             self.distance("the distance")?,
             self.distance("the tolerance below")?,
@@ -95,11 +119,11 @@ impl Statements<'_> {
             let tokens = &mut self.selections.tokens;
             if tokens.skip_keyword(&["or"])?.is_some() {
                 if known.is_empty() {
-                    known.extend(pairs.iter().cloned());
+                    known.extend(alternatives.iter().cloned());
                 }
                 let pair = self.pair()?;
                 if known.insert(pair.clone()) {
-                    pairs.push(pair);
+                    alternatives.push(pair);
                 }
             } else if tokens.skip_keyword(&["weight"])?.is_some() {
                 let (weight, text, place) = self.number("a weight")?;
@@ -112,36 +136,46 @@ impl Statements<'_> {
                 break;
             }
         }
-        Ok(NamedRestraint {
+        let Some(alternatives) = alternatives.into_iter().collect::<Option<Vec<Pair>>>() else {
+            return Ok(None);
+        };
+        let (pairs, sides): (Vec<_>, Vec<usize>) = alternatives.into_iter().unzip();
+        let sides = sides.into_iter().max().unwrap_or(0);
+        Ok(Some(NamedRestraint {
             name,
             line: place.line,
             pairs,
             lower: bounds.lower,
             target: bounds.target,
-            upper: bounds.upper,
-        })
+            upper: match self.bounds {
+                TblBounds::Widened => widened(bounds.upper, sides),
+                TblBounds::Written => bounds.upper,
+            },
+            written_upper: bounds.upper,
+        }))
     }
 
-    /// Two selections: the atoms of the receptor and of the ligand.
-    fn pair(&mut self) -> Result<[Vec<usize>; 2], Located> {
-        let ((first_side, first), place) = self.selection()?;
-        let ((second_side, second), _) = self.selection()?;
-        if first_side == second_side {
-            return Err(place.fault(RestraintFault::OneSide(SIDES[first_side])));
+    /// Two selections; `None` if they are of one molecule.
+    fn pair(&mut self) -> Result<Option<Pair>, Located> {
+        let (first, place) = self.selection()?;
+        let (second, _) = self.selection()?;
+        if first.side == second.side {
+            return Ok(None);
         }
-        let pair = if first_side == 0 {
-            [first, second]
+        let sides = usize::from(first.has_hydrogens) + usize::from(second.has_hydrogens);
+        let pair = if first.side == 0 {
+            [first.atoms, second.atoms]
         } else {
-            [second, first]
+            [second.atoms, first.atoms]
         };
         self.selected
             .add(&pair)
             .map_err(|fault| place.fault(fault))?;
-        Ok(pair)
+        Ok(Some((pair, sides)))
     }
 
-    /// One selection: the molecule that it is of, its atoms, and where it begins.
-    fn selection(&mut self) -> Result<((usize, Vec<usize>), Place), Located> {
+    /// One selection, and where it begins.
+    fn selection(&mut self) -> Result<(Selected, Place), Located> {
         let (expression, place) = self.selections.selection()?;
         let tokens = &self.selections.tokens;
         let written = || shortened(tokens.between(place.byte, tokens.place().byte));

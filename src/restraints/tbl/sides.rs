@@ -7,12 +7,24 @@ use knotdock_structures::molecule::Molecule;
 use crate::named_columns::listed;
 use crate::restraints::error::RestraintFault;
 use crate::restraints::side_atoms::{heavy, residue};
-use crate::restraints::tbl::expression::Expression;
+use crate::restraints::tbl::atom_index::AtomIndex;
+use crate::restraints::tbl::expression::{Expression, Tested};
 
 /// Receptor and ligand as statements see them: all their atoms in one.
 pub(super) struct Sides<'a> {
     molecules: [&'a Molecule; 2],
+    index: AtomIndex<'a>,
     chains: [BTreeSet<&'a str>; 2],
+}
+
+/// What a selection selects.
+pub(super) struct Selected {
+    /// The molecule, 0 or 1.
+    pub(super) side: usize,
+    /// Its atoms, rising.
+    pub(super) atoms: Vec<usize>,
+    /// Whether HADDOCK would count hydrogens of theirs, too.
+    pub(super) has_hydrogens: bool,
 }
 
 /// The words for the molecules.
@@ -20,12 +32,11 @@ pub(super) const SIDES: [&str; 2] = ["receptor", "ligand"];
 
 impl<'a> Sides<'a> {
     pub(super) fn new(molecules: [&'a Molecule; 2]) -> Self {
+        let index = AtomIndex::new(molecules);
         Self {
             molecules,
-            chains: molecules.map(|molecule| {
-                let atoms = molecule.atoms.iter();
-                atoms.map(|atom| atom.chain.as_str()).collect()
-            }),
+            chains: [0, 1].map(|side| index.chains_of(side)),
+            index,
         }
     }
 
@@ -34,16 +45,18 @@ impl<'a> Sides<'a> {
         self.chains[0].union(&self.chains[1]).copied().collect()
     }
 
-    /// The molecule (0 or 1) that a selection is of, and its atoms, rising. `written` is the selection's text.
+    /// The molecule that a selection is of, and its atoms. `written` is the selection's text.
     pub(super) fn select(
         &self,
         expression: &Expression,
         written: impl Fn() -> String,
-    ) -> Result<(usize, Vec<usize>), RestraintFault> {
-        let [receptor, ligand] = self.molecules.map(|molecule| {
-            let atoms = &molecule.atoms;
-            let is_selected = |index: &usize| expression.holds(&atoms[*index]);
-            heavy(atoms, (0..atoms.len()).filter(is_selected).collect())
+    ) -> Result<Selected, RestraintFault> {
+        let chosen = expression.select(&self.index, Tested::Atoms);
+        let chosen: [&[bool]; 2] = chosen.split_at(self.index.receptor).into();
+        let [receptor, ligand] = [0, 1].map(|side| {
+            let atoms = chosen[side].iter().enumerate();
+            let atoms = atoms.filter(|(_, chosen)| **chosen).map(|(at, _)| at);
+            heavy(&self.molecules[side].atoms, atoms.collect())
         });
         let chain_names = |side: usize, atoms: &[usize]| -> BTreeSet<&str> {
             let atoms = atoms
@@ -60,8 +73,8 @@ impl<'a> Sides<'a> {
             });
         }
         match (receptor.is_empty(), ligand.is_empty()) {
-            (false, true) => Ok((0, receptor)),
-            (true, false) => Ok((1, ligand)),
+            (false, true) => Ok(self.selected(0, receptor, expression)),
+            (true, false) => Ok(self.selected(1, ligand, expression)),
             (false, false) => Err(RestraintFault::BothSides {
                 selection: written(),
                 chains: names.map(|names| in_words(&names)),
@@ -73,13 +86,32 @@ impl<'a> Sides<'a> {
         }
     }
 
+    /// The atoms of a side, with whether the selection holds hydrogens of theirs, in the file or not.
+    fn selected(&self, side: usize, atoms: Vec<usize>, expression: &Expression) -> Selected {
+        let carries = expression.select(&self.index, Tested::Hydrogens);
+        let first = [0, self.index.receptor][side];
+        let has_hydrogens = |&at: &usize| {
+            let may = matches!(
+                self.molecules[side].atoms[at].element.as_str(),
+                "C" | "N" | "O" | "S"
+            );
+            may && carries[first + at]
+        };
+        Selected {
+            side,
+            has_hydrogens: atoms.iter().any(has_hydrogens),
+            atoms,
+        }
+    }
+
     /// What there is in place of atoms that a selection does not find: the atoms of its first residue where only
     /// their names are wrong, else chains and numbers.
     fn present(&self, expression: &Expression) -> String {
-        for (side, molecule) in SIDES.iter().zip(self.molecules) {
-            let mut atoms = molecule.atoms.iter();
-            if let Some(first) = atoms.find(|atom| expression.holds_but_for_names(atom)) {
-                let own = residue(first);
+        let chosen = expression.select(&self.index, Tested::Residues);
+        let chosen: [&[bool]; 2] = chosen.split_at(self.index.receptor).into();
+        for ((side, molecule), chosen) in SIDES.iter().zip(self.molecules).zip(chosen) {
+            if let Some(first) = chosen.iter().position(|chosen| *chosen) {
+                let own = residue(&molecule.atoms[first]);
                 let others = molecule.atoms.iter().filter(|atom| residue(atom) == own);
                 let names = listed(others.map(|atom| atom.name.as_str()));
                 return format!("{own} of the {side} has {names}");

@@ -5,7 +5,8 @@ use crate::test_molecules::molecules;
 
 fn read(text: &str) -> Result<Vec<NamedRestraint>, Located> {
     let [receptor, ligand] = molecules();
-    parse(text.into(), [&receptor, &ligand])
+    let read = parse(text.into(), [&receptor, &ligand], TblBounds::Written)?;
+    Ok(read.list)
 }
 
 /// The atoms of a selection of the receptor, by residue and name.
@@ -36,6 +37,7 @@ fn a_statement_is_a_restraint() {
             lower,
             target: Some(target),
             upper,
+            written_upper: upper,
         };
     assert_eq!(
         read,
@@ -262,13 +264,13 @@ fn malformed_files_are_refused_by_line_and_column() {
         ),
         (
             "\nassign (segid A) (segid D) 2 2 0",
-            [2, 8],
-            "both selections are of the receptor",
+            [2, 1],
+            "the restraint is within one molecule, which docking does not change",
         ),
         (
-            "assign (segid B) (segid b) 2 2 0",
-            [1, 8],
-            "both selections are of the ligand",
+            "\nassign (segid B) (segid b) 2 2 0\nassign (segid B) (segid B) 2 2 0",
+            [2, 1],
+            "all 2 restraints are within one molecule, which docking does not change",
         ),
         (
             "assign (segid A) (segid B) 2 2",
@@ -338,6 +340,66 @@ fn malformed_files_are_refused_by_line_and_column() {
         assert!(said.starts_with(message), "{shown}: {said}");
         assert!(!error.fault.remedy().is_empty());
     }
+}
+
+/// HADDOCK writes distances within a molecule beside those between two, and one of them stopped a run. Of an ambiguous
+/// restraint one alternative within a molecule may be what satisfies it.
+#[test]
+fn restraints_within_a_molecule_are_left_out() {
+    let [receptor, ligand] = molecules();
+    let text = "assign (segid A and resid 10) (segid A and resid 52) 14 1 1\n\
+        assign (segid A and resid 10) (segid B and resid 20) 2 2 0\n\
+        assign (segid B and resid 20) (segid B and resid 21) 2 2 0 or (segid A) (segid B)\n\
+        assign (segid A) (segid B) 2 2 0 or (segid D) (segid A)";
+    let read = parse(text.into(), [&receptor, &ligand], TblBounds::Written).unwrap();
+    assert_eq!((read.list.len(), read.within_one_molecule), (1, 3));
+    // By its place in the file.
+    assert_eq!(read.list[0].name, "restraint 2");
+    let faulty = format!("{text}\nassign (segid A) (segid D) 2 x 0");
+    assert!(parse(faulty.into(), [&receptor, &ligand], TblBounds::Written).is_err());
+}
+
+/// Bounds are widened for the hydrogens that a selection holds, not for those that it leaves out.
+#[test]
+fn bounds_are_widened_for_the_hydrogens_selected() {
+    let [receptor, ligand] = molecules();
+    let upper = |first: &str, second: &str, bounds: TblBounds| {
+        let text = format!("assign {first} {second} 2 2 0");
+        let read = parse(text.into(), [&receptor, &ligand], bounds).unwrap();
+        assert_eq!((read.list[0].lower, read.list[0].written_upper), (0.0, 2.0));
+        read.list[0].upper
+    };
+    let whole = "(segid A and resid 10)";
+    for (first, sides) in [
+        (whole, 2),
+        ("(segid A and resid 10 and not name CA)", 2),
+        ("(segid A and resid 10 and (name CB or name HB#))", 2),
+        ("(segid A and resid 10 and (name N or name HN))", 2),
+        ("(segid A and resid 10 and name CA)", 1),
+        ("(segid A and resid 10 and name C*)", 1),
+        ("(segid A and resid 10 and not hydrogen)", 1),
+        // The only atom of this name, which is in the file.
+        ("(segid A and resid 10 and name H)", 1),
+    ] {
+        let found = upper(first, "(segid B and resid 20)", TblBounds::Widened);
+        assert_eq!(found, widened(2.0, sides), "{first}");
+    }
+    let alpha = "(segid B and resid 20 and name CA)";
+    assert_eq!(upper(whole, alpha, TblBounds::Widened), widened(2.0, 1));
+    let alphas = upper("(segid A and name CA)", alpha, TblBounds::Widened);
+    assert!((alphas - 2.0).abs() < 1e-12);
+    assert_eq!(
+        upper(
+            whole,
+            whole.replace('A', "B").replace("10", "20").as_str(),
+            TblBounds::Written
+        ),
+        2.0
+    );
+    // One alternative with hydrogens is enough.
+    let text = format!("assign (segid A and name CA) {alpha} 2 2 0 or {whole} (segid B)");
+    let read = parse(text.into(), [&receptor, &ligand], TblBounds::Widened).unwrap();
+    assert_eq!(read.list[0].upper, widened(2.0, 2));
 }
 
 /// A hundred levels are read, and one more is refused.

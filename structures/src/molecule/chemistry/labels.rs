@@ -15,6 +15,9 @@ use std::collections::BTreeMap;
 pub struct Labels {
     /// Charge of each atom, in e.
     pub charges: Vec<f64>,
+    /// 1 for the atoms that share the charge of a positive group, -1 for those of a negative one, else 0. Groups are
+    /// charged side chains, phosphates, ions, and cofactors whose charges are known; termini are none.
+    pub group_signs: Vec<i8>,
     /// Contact type of each atom, `None` outside amino acids.
     pub contact_types: Vec<Option<u8>>,
     /// Kind of each atom ([`atom_kinds`](crate::molecule::atom_kinds)), `None` outside amino acids.
@@ -50,6 +53,7 @@ impl Molecule {
     pub fn labels(&self, ph: f64) -> Labels {
         let mut labels = Labels {
             charges: vec![0.0; self.atoms.len()],
+            group_signs: vec![0; self.atoms.len()],
             contact_types: vec![None; self.atoms.len()],
             atom_kinds: vec![None; self.atoms.len()],
             report: LabelReport::default(),
@@ -93,11 +97,11 @@ impl Molecule {
                 let backbone = if is_proline(name) { PROLINE } else { BACKBONE };
                 self.set(residue, backbone, labels);
                 match side_chain(bound.unwrap_or(name), ph) {
-                    Some(charges) => self.set(residue, charges, labels),
+                    Some(charges) => self.set_group(residue, charges, labels),
                     None => known = false,
                 }
             }
-            GroupKind::Nucleotide => self.set(residue, NUCLEOTIDE, labels),
+            GroupKind::Nucleotide => self.set_group(residue, NUCLEOTIDE, labels),
             // Uncharged but for the acids among them, which are rare.
             GroupKind::Glycan => {}
             GroupKind::Metal | GroupKind::Cofactor => {
@@ -108,8 +112,11 @@ impl Molecule {
                 let charge =
                     single.and_then(|(index, atom)| Some((index, ion(name, &atom.element)?)));
                 match (charge, cofactor(name)) {
-                    (Some((index, charge)), _) => labels.charges[index] = charge,
-                    (None, Some(charges)) => self.set(residue, charges, labels),
+                    (Some((index, charge)), _) => {
+                        labels.charges[index] = charge;
+                        labels.group_signs[index] = charge.signum() as i8;
+                    }
+                    (None, Some(charges)) => self.set_group(residue, charges, labels),
                     (None, None) => known = false,
                 }
             }
@@ -120,6 +127,21 @@ impl Molecule {
                 .unknown_charges
                 .entry(name.to_owned())
                 .or_default() += 1;
+        }
+    }
+
+    /// Sets the charges of a group, which its atoms share if they sum to more than half of a unit.
+    fn set_group(&self, residue: &Residue<'_>, charges: Charges, labels: &mut Labels) {
+        self.set(residue, charges, labels);
+        let sum: f64 = charges.iter().map(|(_, charge)| charge).sum();
+        if sum.abs() < 0.5 {
+            return;
+        }
+        for &index in &residue.atoms {
+            let name = self.atoms.get(index).map_or("", |atom| atom.name.as_str());
+            if charges.iter().any(|(known, _)| *known == name) {
+                labels.group_signs[index] = sum.signum() as i8;
+            }
         }
     }
 

@@ -134,6 +134,8 @@ pub struct Altered {
     pub elements_corrected: usize,
     /// Blank or unreadable occupancies and temperature factors, replaced by 1 and 0.
     pub defaults_filled: usize,
+    /// Atoms whose chain is their segid (columns 73-76 of PDB), since the file leaves the column of the chain blank.
+    pub chains_from_segids: usize,
     /// Residues with alternate locations, and the one chosen.
     pub alternate_locations: Vec<AlternateChoice>,
     /// Models that were not read.

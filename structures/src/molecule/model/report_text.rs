@@ -246,6 +246,10 @@ impl Altered {
             filled,
             format!("{} filled", count(filled, "occupancy or B value")),
         );
+        say(
+            self.chains_from_segids,
+            "chains named by the segid, columns 73-76".to_owned(),
+        );
         let choices = self.alternate_locations.len();
         say(
             choices,

@@ -242,6 +242,7 @@ fn report_filtered(filtered: &FilteredRecords, is_joined: bool, report: &mut Rea
         report.altered.models_ignored = filtered.models.saturating_sub(1);
     }
     report.altered.defaults_filled = filtered.defaults_filled;
+    report.altered.chains_from_segids = filtered.chains_from_segids;
     report.drop_atoms(DropKind::Model, "", filtered.atoms_ignored);
 
     if let Some((line, name)) = filtered.other_blocks.first() {

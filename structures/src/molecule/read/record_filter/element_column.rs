@@ -21,14 +21,18 @@ const TYPES: [(&str, &str); 9] = [
 /// The element as the record has it; may be empty or nonsense.
 pub(crate) fn element(record: &str) -> &str {
     let columns = |from: usize, to: usize| record.get(from..to.min(record.len())).unwrap_or("");
-    let charge = columns(70, 76).trim();
-    let is_charge = charge.contains('.') && number(charge).is_some();
-    if !is_charge || columns(76, 77) != " " {
+    if !has_partial_charge(record) {
         return columns(76, 78).trim();
     }
     let kind = columns(77, 79).trim();
     let other = TYPES.iter().find(|(known, _)| *known == kind);
     other.map_or(kind, |(_, element)| element)
+}
+
+/// Whether a record has PDBQT's partial charge.
+pub(crate) fn has_partial_charge(record: &str) -> bool {
+    let charge = record.get(70..76).unwrap_or("").trim();
+    charge.contains('.') && number(charge).is_some() && record.get(76..77) == Some(" ")
 }
 
 #[cfg(test)]

@@ -28,4 +28,5 @@ pub(crate) mod pdb;
 pub(crate) mod provenance;
 pub(crate) mod record;
 pub(crate) mod residue_columns;
+pub(crate) mod segid;
 pub(crate) mod tokens;

@@ -20,6 +20,7 @@ use crate::molecule::read::record_filter::record::{
 use crate::molecule::read::record_filter::residue_columns::{
     has_wide_chains, residue_and_chain, residue_number,
 };
+use crate::molecule::read::record_filter::segid::segid;
 
 /// Record names that show a file to be PDB even where it holds no atom.
 const RECORDS: [&str; 14] = [
@@ -40,9 +41,12 @@ pub(crate) fn filter(
     let mut models = Models::default();
     let mut assemblies = Remark::default();
     let wide_chains = has_wide_chains(text);
+    // Whether any atom of the file has a chain, and the segids of those that are read.
+    let (mut has_chains, mut segids) = (false, Vec::new());
     for (line, record) in lines(text) {
         if let Some(place) = AtomLine::of(record) {
             filtered.recognised = true;
+            has_chains |= place.text().is_some_and(|text| !is_blank(chain(text)));
             let number = models.of(place.text().unwrap_or(record));
             if !model.takes(number) {
                 filtered.ignore(number, place.text().and_then(position));
@@ -58,6 +62,7 @@ pub(crate) fn filter(
                 filtered.displaced.push(line);
             }
             atom(file, line, text, wide_chains, number, &mut filtered)?;
+            segids.push(segid(text));
         } else {
             let name = record_name(record);
             filtered.recognised |= RECORDS.contains(&name.as_ref());
@@ -73,7 +78,22 @@ pub(crate) fn filter(
     }
     filtered.models = models.count;
     filtered.assemblies = assemblies.assemblies();
+    if !has_chains {
+        for (record, segid) in filtered.records.iter_mut().zip(segids) {
+            filtered.chains_from_segids += usize::from(!segid.is_empty());
+            record.chain = segid;
+        }
+    }
     Ok(filtered)
+}
+
+/// The column of the chain.
+fn chain(record: &str) -> &str {
+    slice(record, 21, 22)
+}
+
+fn is_blank(columns: &str) -> bool {
+    columns.trim().is_empty()
 }
 
 /// An atom's record, and where it stands.
@@ -128,8 +148,8 @@ fn position(record: &str) -> Option<[f64; 3]> {
 /// Distinguishes the models.
 #[derive(Default)]
 struct Models {
-    /// Columns 13 to 27 of the first atom: what a second model starts with too.
-    first: Option<String>,
+    /// Columns 13 to 27 of the first atom, and its segid if its chain is blank: what a second model starts with too.
+    first: Option<(String, String)>,
     /// A MODEL, ENDMDL or END record stands since the last atom.
     boundary: Option<Boundary>,
     /// Models so far: the number of the one being read.
@@ -155,16 +175,20 @@ impl Models {
 
     /// The number of the model that an atom record belongs to, from 1.
     fn of(&mut self, record: &str) -> usize {
-        let identity = record.get(12..27).unwrap_or(record);
+        let identity = || {
+            let columns = record.get(12..27).unwrap_or(record);
+            let segid = Some(segid(record)).filter(|_| is_blank(chain(record)));
+            (columns.to_owned(), segid.unwrap_or_default())
+        };
         let boundary = self.boundary.take();
         let Some(first) = &self.first else {
-            self.first = Some(identity.to_string());
+            self.first = Some(identity());
             self.count = 1;
             return 1;
         };
         let starts_model = match boundary {
             Some(Boundary::Model) => true,
-            Some(Boundary::End) => identity == first,
+            Some(Boundary::End) => identity() == *first,
             None => false,
         };
         if starts_model {

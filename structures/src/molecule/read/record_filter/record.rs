@@ -59,6 +59,8 @@ pub(crate) struct FilteredRecords {
     pub(crate) displaced: Vec<usize>,
     /// Blank or unreadable occupancies and temperature factors that were replaced by 1 and 0.
     pub(crate) defaults_filled: usize,
+    /// Atoms that got their chain from the segid, since the file has no chains.
+    pub(crate) chains_from_segids: usize,
     /// Lines at which the file itself ends a chain; see
     /// [`Molecule::chain_breaks`](crate::molecule::Molecule::chain_breaks).
     pub(crate) chain_breaks: Vec<usize>,
