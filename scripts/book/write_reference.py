@@ -119,8 +119,7 @@ def read(program: Path, words: list[str]) -> Command:
             command.examples += [line.strip()] if line.startswith("  ") else []
         elif re.match(r" {2,6}[-\[<]", line):
             # A short help has the meaning on the same line.
-            name, _, meaning = line.strip().partition("   ")
-            held = [meaning]
+            name, *held = re.split(r" {2,}", line.strip(), maxsplit=1)
         else:
             held.append(line)
     return command

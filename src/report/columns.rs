@@ -203,20 +203,23 @@ pub(super) fn of_table(
     header.iter().enumerate().map(column).collect()
 }
 
-/// Decimals that show three digits of the middle one of some numbers; `None` where they are not numbers.
+/// Decimals that show three digits of the middle one of the numbers that are not zero; `None` if some are no numbers.
 fn digits_of<'a>(fields: impl Iterator<Item = &'a str>) -> Option<usize> {
     let mut sizes = Vec::new();
-    let mut are_whole = true;
+    let (mut any, mut are_whole) = (false, true);
     for field in fields.filter(|field| !field.is_empty()) {
         let value: f64 = field.parse().ok().filter(|value: &f64| value.is_finite())?;
+        any = true;
         are_whole &= value.fract() == 0.0;
-        sizes.push(value.abs());
+        sizes.extend((value != 0.0).then_some(value.abs()));
     }
-    if sizes.is_empty() {
+    if !any {
         return None;
     }
     sizes.sort_by(f64::total_cmp);
-    let middle = sizes[sizes.len() / 2].max(1e-6);
+    let middle = sizes
+        .get(sizes.len() / 2)
+        .map_or(1.0, |size| size.max(1e-6));
     match are_whole {
         true => Some(0),
         false => Some((2 - middle.log10().floor() as i32).clamp(0, 8) as usize),

@@ -26,6 +26,7 @@ function set(element, attributes) {
 function shownNumber(value, digits) {
   if (value === null || value === undefined) return "–";
   if (typeof value !== "number") return String(value);
+  if (value === 0 && digits > 3) return "0";
   return value.toFixed(digits ?? 0).replace("-", "−");
 }
 

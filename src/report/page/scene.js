@@ -110,19 +110,27 @@ function makeScene(root, data) {
     });
   }
 
+  /** Brings all into view. What is zoomed to fits into the height but for its corners, which stand nearer. */
+  function fit() {
+    viewer.resize();
+    viewer.zoomTo();
+    viewer.zoom(0.9 * Math.min(1, root.clientWidth / Math.max(root.clientHeight, 1)));
+    viewer.render();
+  }
+
   place();
   paint();
-  viewer.zoomTo();
-  viewer.render();
+  fit();
   // Prints cannot show the canvas of the graphics card.
   const picture = make("img", { alt: "The selected pose" });
   root.append(picture);
   window.addEventListener("beforeprint", () => { picture.src = viewer.pngURI(); });
   window.addEventListener("resize", () => viewer.resize());
   return {
-    show(next) { row = next; place(); paint(); viewer.render(); },
+    // A mesh may go anywhere from one row to the next; molecules stay about the receptor.
+    show(next) { row = next; place(); paint(); if (isMesh) fit(); else viewer.render(); },
     style(changed) { Object.assign(choices, changed); paint(); viewer.render(); },
-    whole() { viewer.zoomTo(); viewer.render(); },
+    whole() { fit(); },
     toInterface() {
       const chosen = interfaceAtoms().filter(({ index }) => index.length > 0);
       if (chosen.length > 0) viewer.zoomTo({ or: chosen.map(({ model, index }) => ({ model: model.getID?.() ?? model.id, index })) }, 300);
