@@ -92,6 +92,7 @@ impl<'a> SampleReport<'a> {
                 "set",
                 "balls",
                 "inward",
+                "at most",
                 "outward",
                 "at most",
                 "missed, %",
@@ -106,6 +107,7 @@ impl<'a> SampleReport<'a> {
                 set_name(set.name).to_owned(),
                 set.balls.len().to_string(),
                 Figure(fit.hausdorff_inward * self.unit).to_string(),
+                self.inward_bound(fit),
                 Figure(fit.hausdorff_outward * self.unit).to_string(),
                 Figure(fit.outward_bound * self.unit).to_string(),
                 self.percent(fit.volume_missed),
@@ -140,8 +142,9 @@ impl<'a> SampleReport<'a> {
         };
         format!(
             "Grid: {n} x {n} x {n} nodes, {} inside, spacing {}, epsilon {}\n\n{}\n\
-             Inward: the farthest that a point of the solid is from the balls, as measured.\n\
-             Outward: the farthest that a point of the balls is from the solid, as measured; and a bound that it cannot exceed.\n\
+             Inward: how far points of the solid are from the balls. The farthest is at least the first figure, which was \
+             measured at samples, and at most the second, which is proven for closed meshes.\n\
+             Outward: the same of points of the balls and the solid.\n\
              {sets}{added}Time: {}",
             self.sampling.inside_nodes,
             Figure(grid.spacing() * self.unit),
@@ -154,12 +157,21 @@ impl<'a> SampleReport<'a> {
     /// Fit of a level of detail, as text.
     pub fn level(&self, balls: usize, fit: &Fit) -> String {
         format!(
-            "Level of detail: {balls} {}, {} from the solid outward (at most {}) and {} inward",
+            "Level of detail: {balls} {}, {} from the solid outward (at most {}) and {} inward (at most {})",
             if balls == 1 { "ball" } else { "balls" },
             Figure(fit.hausdorff_outward * self.unit),
             Figure(fit.outward_bound * self.unit),
-            Figure(fit.hausdorff_inward * self.unit)
+            Figure(fit.hausdorff_inward * self.unit),
+            self.inward_bound(fit)
         )
+    }
+
+    /// Upper bound of the inward distance.
+    fn inward_bound(&self, fit: &Fit) -> String {
+        let bound = fit.inward_bound;
+        bound.map_or("-".to_owned(), |bound| {
+            Figure(bound * self.unit).to_string()
+        })
     }
 
     /// The sampling, for a program.
@@ -206,6 +218,7 @@ impl<'a> SampleReport<'a> {
     pub fn fit(&self, fit: &Fit) -> Value {
         json!({
             "hausdorff_inward": fit.hausdorff_inward * self.unit,
+            "inward_bound": fit.inward_bound.map(|bound| bound * self.unit),
             "hausdorff_outward": fit.hausdorff_outward * self.unit,
             "outward_bound": fit.outward_bound * self.unit,
             "volume_missed": self.measured(fit.volume_missed),

@@ -20,7 +20,7 @@ pub struct MeshSampling {
     pub per_axis: usize,
     /// eps of the grid.
     pub grid_epsilon: f64,
-    /// Farthest distance of a point of the solid from the inner balls, as measured.
+    /// No point of the solid is farther from the inner balls; of meshes that are not closed, as measured.
     pub inward: f64,
     /// Share of the solid's volume that the inner balls miss; `None` where the grid sees no volume.
     pub missed: Option<f64>,
@@ -46,8 +46,9 @@ impl BallSolid {
         let balls = a1.balls;
         let fit = meter.measure(&balls);
         let grid_epsilon = field.grid.epsilon();
-        // Algorithm 1 keeps to the grid's eps on closed meshes; on others it may not.
-        let epsilon = grid_epsilon.max(fit.hausdorff_inward);
+        // The inner balls grown by this hold a closed mesh for certain; of others it is what was measured.
+        let inward = fit.inward_bound.unwrap_or(fit.hausdorff_inward);
+        let epsilon = grid_epsilon.max(inward);
         let few = few_of(&balls, grid_epsilon);
         let volume = meter.volume();
         let weights = match (Bump::new(ALPHA), sampling.inside_nodes) {
@@ -79,7 +80,7 @@ impl BallSolid {
         let sampled = MeshSampling {
             per_axis,
             grid_epsilon: grid_epsilon * unit,
-            inward: fit.hausdorff_inward * unit,
+            inward: inward * unit,
             missed: (volume > 0.0).then(|| fit.volume_missed / volume),
         };
         Ok((solid, sampled))

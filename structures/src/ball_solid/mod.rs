@@ -14,8 +14,9 @@
 //!
 //! # Where the balls come from
 //!
-//! - **Mesh**: the set A1 of Algorithm 1, eps that of its grid, or what was measured where that is more
-//!   ([`BallSolid::from_mesh`]). A3 as it is misses a little of the solid, so it is no outer set.
+//! - **Mesh**: the set A1 of Algorithm 1. Eps is that of its grid, or more if the balls grown by it are not shown to
+//!   hold the mesh ([`BallSolid::from_mesh`]); of meshes that are not closed it is measured. A3 as it is misses a little
+//!   of the solid, so it is no outer set.
 //! - **Molecule**, or any list of balls: the solid is their union, and eps is zero ([`BallSolid::from_balls`]).
 //!
 //! # Conventions

@@ -3,7 +3,9 @@
 //! *Inward*, from S to S(A): the farthest that a point of the solid is from the balls. It is taken over samples of
 //! the surface spaced by eps / 10 at most, and over the inside points of a grid of 8 m points. The grid is every node
 //! moved by a quarter of the spacing in each of the eight directions. Samples with nothing of the solid on either
-//! side are not points of it.
+//! side are not points of it. A point between samples may be farther, so the distance measured is a lower bound. The
+//! upper one holds for closed meshes: the cells about the grid's points are halved until each is outside the solid or
+//! its middle is so near to the balls that none of its points is farther.
 //!
 //! *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid. It is taken over the same
 //! grid's points in the balls, and over the point of each ball's sphere on the far side of the surface point nearest to
@@ -29,11 +31,18 @@ use crate::sampling::outward::farthest;
 /// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
 const OUTWARD_TOLERANCE: f64 = 0.01;
 
+/// How far above the inward distance measured its upper bound may be without more search, as a share of eps.
+const INWARD_TOLERANCE: f64 = 1.0 / 32.0;
+/// Times that a cell is halved for the upper bound; the last ones reach [`INWARD_TOLERANCE`] / 2 from their middles.
+const HALVINGS: u32 = 5;
+
 /// Result of [`HausdorffMeter::measure`]. Lengths and volumes are in the solid's unit and its cube.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Fit {
-    /// Farthest distance of a point of the solid from the balls.
+    /// Farthest distance of a point of the solid from the balls that was found: a lower bound.
     pub hausdorff_inward: f64,
+    /// No point of the solid is farther from the balls than this; `None` for meshes that are not closed.
+    pub inward_bound: Option<f64>,
     /// Farthest distance of a point of the balls from the solid.
     pub hausdorff_outward: f64,
     /// No point of the balls can be farther from the solid than this.
@@ -163,7 +172,7 @@ impl<'a> HausdorffMeter<'a> {
                 || (0, 0, 0.0, 0.0),
                 |a, b| (a.0 + b.0, a.1 + b.1, f64::max(a.2, b.2), f64::max(a.3, b.3)),
             );
-        let surface = self.surface_distance(&tree);
+        let inward = f64::max(inner, self.surface_distance(&tree));
         let touching: Vec<(f64, f64)> = balls.par_iter().map(|ball| self.outward(ball)).collect();
         let (seen, bound) = touching.iter().fold((outer, 0.0), |a, b| {
             (f64::max(a.0, b.0), f64::max(a.1, b.1))
@@ -186,7 +195,8 @@ impl<'a> HausdorffMeter<'a> {
             })
             .count();
         Fit {
-            hausdorff_inward: f64::max(inner, surface),
+            hausdorff_inward: inward,
+            inward_bound: self.inward_bound(&tree, inward),
             hausdorff_outward: seen,
             outward_bound: bound,
             volume_missed: missed as f64 * cell,
@@ -282,6 +292,66 @@ impl<'a> HausdorffMeter<'a> {
             );
         });
         farthest.get()
+    }
+
+    /// Upper bound of the distance of the solid's points from the balls, given the distance measured.
+    fn inward_bound(&self, tree: &BallTree, measured: f64) -> Option<f64> {
+        if !self.solid.mesh().is_closed() {
+            return None;
+        }
+        // A set that covers the solid is shown to.
+        let goal = match measured > 0.0 {
+            true => measured + INWARD_TOLERANCE * self.field.grid.epsilon(),
+            false => 0.0,
+        };
+        let fine = self.fine;
+        let cells = fine.per_axis - 4;
+        let row = |row: usize| {
+            // The outermost two cells on either side are outside the cube.
+            let place = |x: usize| [x, row % cells, row / cells];
+            let near = (0..cells).map(place).filter(|place| {
+                let node = self.field.grid.index(place.map(|number| number / 2));
+                self.field.depth[node] >= -self.field.grid.epsilon() * (1.0 + 1e-9)
+            });
+            near.fold(goal, |goal, place| {
+                let middle = place.map(|number| fine.coordinate(number + 2));
+                self.beyond(tree, middle, 0.5 * fine.step, goal, HALVINGS)
+            })
+        };
+        let rows = (0..cells * cells).into_par_iter().map(row);
+        Some(rows.reduce(|| goal, f64::max))
+    }
+
+    /// `goal`, or if points of the solid in a cell may be farther from the balls, a bound for these. `half` is half of
+    /// the cell's edge.
+    fn beyond(
+        &self,
+        tree: &BallTree,
+        middle: [f64; 3],
+        half: f64,
+        goal: f64,
+        halvings: u32,
+    ) -> f64 {
+        let reach = 3.0f64.sqrt() * half * (1.0 + 1e-9);
+        let away = tree.distance(middle, goal - reach);
+        if away + reach <= goal {
+            return goal;
+        }
+        if self.solid.distance(middle) > reach && !self.solid.is_inside(middle) {
+            return goal;
+        }
+        if halvings == 0 {
+            return away + reach;
+        }
+        let quarter = 0.5 * half;
+        (0..8u32).fold(goal, |goal, corner| {
+            let shift = |axis: usize| match corner >> axis & 1 {
+                1 => quarter,
+                _ => -quarter,
+            };
+            let part = [0, 1, 2].map(|axis| middle[axis] + shift(axis));
+            self.beyond(tree, part, quarter, goal, halvings - 1)
+        })
     }
 
     /// Distance of a ball outside of the solid: measured, and its upper bound.
