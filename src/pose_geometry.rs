@@ -24,7 +24,7 @@ pub struct PoseGeometry {
     pub volume_ligand: f64,
     /// Volume that lies in both, in Å^3.
     pub volume_shared: f64,
-    /// Measured error of the volumes, in Å^3.
+    /// Bound of the error of each volume, in Å^3.
     pub volume_error: f64,
     /// Tanimoto similarity of the two solids: shared volume over that of both together.
     pub shape_tanimoto: f64,

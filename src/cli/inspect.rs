@@ -241,8 +241,8 @@ fn labels_text(found: &Inspection, ph: f64) -> String {
         ),
         format!("Atoms of known contact type: {}", labels.typed_atoms),
         format!(
-            "Solvent-accessible surface: {area:.0} Å²; volume of the atoms' balls: {:.1} ± {:.1} Å³",
-            volume.value, volume.error
+            "Solvent-accessible surface: {area:.0} Å²; volume of the atoms' balls: {:.1} Å³",
+            volume.value
         ),
     ];
     lines.extend(

@@ -195,13 +195,12 @@ fn pose_numbers(pose: &Pose) -> serde_json::Value {
 /// The pose as two solids: buried surface and shared volume.
 fn geometry_text(geometry: &PoseGeometry) -> String {
     format!(
-        "Buried surface {:.0} Å² ({:.0} of the receptor, {:.0} of the ligand); shared volume {:.1} ± {:.1} Å³ of {:.0} and {:.0}: \
+        "Buried surface {:.0} Å² ({:.0} of the receptor, {:.0} of the ligand); shared volume {:.1} Å³ of {:.0} and {:.0}: \
          Tanimoto similarity {:.4}, {:.2}% of the smaller protrudes",
         geometry.buried_area,
         geometry.buried_area_receptor,
         geometry.buried_area_ligand,
         geometry.volume_shared,
-        geometry.volume_error,
         geometry.volume_receptor,
         geometry.volume_ligand,
         geometry.shape_tanimoto,

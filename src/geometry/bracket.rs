@@ -1,9 +1,8 @@
 //! A solid between two sets of balls.
 
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::Knots;
 use knotdock_structures::ball_solid::BallSolid;
-use knotdock_structures::ball_union::union_volume;
+use knotdock_structures::ball_union::volume_of_union;
 use knotdock_structures::sampling::Ball;
 use knotdock_structures::sampling::grid::Grid;
 
@@ -125,10 +124,7 @@ pub fn bounds(balls: &[Ball]) -> ([f64; 3], [f64; 3]) {
 /// Nodes an axis of the grid by which balls deep in a union are left out of its volume.
 const VOLUME_GRID: usize = 64;
 
-/// Error of the volume of one ball, as a share.
-const ONE_BALL: f64 = 2e-3;
-
-/// Volume of the union of balls and its error, in the cube of their unit; zero without balls.
+/// Volume of the union of balls and a bound of its error, in the cube of their unit; zero without balls.
 pub fn volume(balls: &[Ball]) -> (f64, f64) {
     let (low, high) = bounds(balls);
     let middle = [0, 1, 2].map(|axis| -0.5 * (low[axis] + high[axis]));
@@ -139,14 +135,7 @@ pub fn volume(balls: &[Ball]) -> (f64, f64) {
     let mut largest_first: Vec<Ball> = balls.iter().map(|ball| shifted(ball, middle)).collect();
     largest_first.sort_by(|a, b| b.radius.total_cmp(&a.radius));
     let needed = largest_first.iter().filter(|ball| cells.takes(ball));
-    let (centers, radii) = needed.map(|ball| (ball.center, ball.radius)).unzip();
-    match Knots::new(centers, radii) {
-        Ok(knots) => {
-            let volume = union_volume(&knots);
-            // By symmetry the lines of all directions err alike about one ball: by up to 0.2% of it.
-            let alike = ONE_BALL * volume.value / (knots.len() as f64).sqrt();
-            (volume.value, volume.error.max(alike))
-        }
-        Err(_) => (0.0, 0.0),
-    }
+    let needed: Vec<Ball> = needed.copied().collect();
+    let volume = volume_of_union(&needed);
+    (volume.value, volume.error)
 }

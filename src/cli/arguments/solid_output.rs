@@ -287,7 +287,7 @@ pub fn knots(balls: &[Ball], origin: [f64; 3]) -> Result<Knots, Failure> {
     Knots::new(centers, radii).map_err(Failure::other)
 }
 
-/// Volumes of a result, and their errors as measured: of the inner balls, of the outer ones.
+/// Volumes of a result, and bounds of their errors: of the inner balls, of the outer ones.
 #[derive(Clone, Copy, Debug)]
 pub struct Volumes {
     /// Of the inner balls.
@@ -309,13 +309,8 @@ impl Volumes {
 
     /// Reports them under the name of the result.
     pub fn describe(&self, name: &str, solid: &Bracket, console: Console) {
-        let set = |balls: &[Ball], (value, error): (f64, f64)| {
-            format!(
-                "{} balls, volume {} ± {}",
-                balls.len(),
-                Figure(value),
-                Figure(error)
-            )
+        let set = |balls: &[Ball], (value, _): (f64, f64)| {
+            format!("{} balls, volume {}", balls.len(), Figure(value))
         };
         console.say(format!(
             "\n{name}:\n  inner: {}\n  outer: {}",

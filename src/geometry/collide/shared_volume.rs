@@ -1,30 +1,36 @@
 //! The volume that two solids share at a pose, between that of their inner and that of their outer balls.
 //!
 //! A point of both solids lies in a ball of either, and these two meet. So only balls that meet one of the other body's
-//! count, and the volumes are those of [`ball_union::overlap_by_lines`] over these.
+//! count. What their unions share is exact but for rounding ([`ball_union::shared_volume`]).
 //!
 //! That cannot stop halfway. Under a deadline the volume is bounded by balls alone: from below by the largest lens of two
 //! inner balls, from above by the balls of either solid that meet one of the other.
 
 use std::f64::consts::PI;
 
-use knotdock_scoring::kernel::product::lens_volume;
-use knotdock_structures::ball_solid::Motion;
-use knotdock_structures::knots::Knots;
-use knotdock_structures::{Ball, ball_union};
+use knotdock_structures::Ball;
+use knotdock_structures::ball_solid::{BallSolid, Motion};
+use knotdock_structures::ball_union::{self, Volume, lens_volume};
 
 use super::scene::{CollisionScene, Deadline, PAIRS_A_LOOK, Workspace};
-
-/// Spacing of the lines that measure volumes, as a share of both eps: what these leave open needs no closer ones.
-const LINES: f64 = 0.25;
 
 /// A volume and how far the true one may be from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SharedVolume {
     /// The middle of the range, in the cube of the files' unit.
     pub value: f64,
-    /// Half of the range, with the errors of the lines by which volumes are measured.
+    /// Half of the range: the volume that the solids share differs from the value by no more than this.
     pub bound: f64,
+}
+
+impl SharedVolume {
+    fn between(low: f64, high: f64) -> Self {
+        let low = low.max(0.0);
+        Self {
+            value: 0.5 * low + 0.5 * high,
+            bound: 0.5 * (high - low).max(0.0),
+        }
+    }
 }
 
 impl CollisionScene {
@@ -41,16 +47,12 @@ impl CollisionScene {
         let inner = self.shared(motion, 0.0, work);
         if self.band() == 0.0 {
             return SharedVolume {
-                value: inner.0,
-                bound: inner.1,
+                value: inner.value,
+                bound: inner.error,
             };
         }
         let outer = self.shared(motion, self.band(), work);
-        let (low, high) = ((inner.0 - inner.1).max(0.0), outer.0 + outer.1);
-        SharedVolume {
-            value: 0.5 * (low + high),
-            bound: 0.5 * (high - low),
-        }
+        SharedVolume::between(inner.value - inner.error, outer.value + outer.error)
     }
 
     /// Bounds from the pairs of balls that meet; of a visit that the deadline ends, from the balls about all of them.
@@ -84,15 +86,11 @@ impl CollisionScene {
             Some(bound) if !all => ball_volume(bound.radius + self.band()),
             _ => high[side],
         });
-        let high = bounds[0].min(bounds[1]);
-        SharedVolume {
-            value: 0.5 * (low + high),
-            bound: 0.5 * (high - low),
-        }
+        SharedVolume::between(low, bounds[0].min(bounds[1]))
     }
 
-    /// Shared volume of the inner balls, or where `band` is above zero of the outer ones, and its error.
-    fn shared(&self, motion: &Motion, band: f64, work: &mut Workspace) -> (f64, f64) {
+    /// Shared volume of the inner balls, or of the outer ones if `band` is above zero.
+    fn shared(&self, motion: &Motion, band: f64, work: &mut Workspace) -> Volume {
         let trees = self.trees();
         let Workspace { pairs, marks, .. } = work;
         for (marks, tree) in marks.iter_mut().zip(trees) {
@@ -115,30 +113,42 @@ impl CollisionScene {
         let second = marked(trees[1].balls(), &marks[1], grown(1), |center| {
             motion.apply(center)
         });
-        match (first, second) {
-            (Some(first), Some(second)) => {
-                let overlap = ball_union::overlap_by_lines(&first, &second, LINES * self.band());
-                (overlap.shared.max(0.0), overlap.error)
-            }
-            _ => (0.0, 0.0),
-        }
+        let mut volume = ball_union::shared_volume(&first, &second);
+        // A place that is rounded moves each sphere by so much.
+        let spheres = [&first, &second].map(|balls| balls.iter().map(sphere).sum::<f64>());
+        volume.error += self.rounding(motion) * spheres[0].min(spheres[1]);
+        volume
     }
+
+    /// How far the rounding of a pose and of coordinates moves a ball of B in A's frame.
+    fn rounding(&self, motion: &Motion) -> f64 {
+        let places = self.solids().each_ref().map(BallSolid::origin);
+        let places = places.iter().chain([&motion.shift]).flatten();
+        let reach: f64 = self.solids().iter().map(BallSolid::reach).sum();
+        4.0 * f64::EPSILON * (reach + places.map(|part| part.abs()).sum::<f64>())
+    }
+}
+
+/// Area of a ball's sphere.
+fn sphere(ball: &Ball) -> f64 {
+    4.0 * PI * ball.radius * ball.radius
 }
 
 fn ball_volume(radius: f64) -> f64 {
     4.0 / 3.0 * PI * radius.powi(3)
 }
 
-/// The marked balls, grown and moved; `None` where none is marked.
+/// The marked balls, grown and moved.
 fn marked(
     balls: &[Ball],
     marks: &[bool],
     grown: f64,
     moved: impl Fn([f64; 3]) -> [f64; 3],
-) -> Option<Knots> {
+) -> Vec<Ball> {
     let marked = balls.iter().zip(marks).filter(|(_, mark)| **mark);
-    let (centers, radii) = marked
-        .map(|(ball, _)| (moved(ball.center), ball.radius + grown))
-        .unzip();
-    Knots::new(centers, radii).ok()
+    let placed = marked.map(|(ball, _)| Ball {
+        center: moved(ball.center),
+        radius: ball.radius + grown,
+    });
+    placed.collect()
 }

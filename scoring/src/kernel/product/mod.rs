@@ -28,13 +28,12 @@
 //! windowed, since a window over pairs is no product of two bodies' transforms, and so beyond a rasteriser. The trim
 //! along the lifted axis has no meaning here.
 
-mod lens;
 mod pairs;
 pub(crate) mod tail_integral;
 #[cfg(test)]
 mod tests;
 
-pub use lens::lens_volume;
+pub use knotdock_structures::ball_union::lens_volume;
 pub use pairs::peak_score_and_reach;
 
 use super::low_pass::smooth_step_down;
