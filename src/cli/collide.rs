@@ -8,7 +8,7 @@ use crate::geometry::collide::{
     Answer, CollisionScene, Method, Quantities, Questions, Verdict, Ways, Workspace,
 };
 use crate::options::Threads;
-use crate::options::values::{count, duration, not_negative};
+use crate::options::values::{count, distance, duration};
 use crate::output::files::whole_file::write_whole;
 use crate::output::tables::collisions;
 use crate::output::tables::report::counted;
@@ -43,11 +43,11 @@ pub struct Collide {
     second: String,
     #[command(flatten)]
     poses: PoseArguments,
-    /// Poses in order, with geodesics between: report the first time at which the solids may meet.
+    /// Poses in order, with geodesics between: report bounds of the first time at which the solids meet.
     #[arg(long, value_name = "FILE", conflicts_with_all = ["pose", "poses"])]
     path: Option<PathBuf>,
     /// Count poses as hits at which the solids are closer than this.
-    #[arg(long, value_name = "DISTANCE", default_value_t = 0.0, value_parser = not_negative)]
+    #[arg(long, value_name = "DISTANCE", default_value_t = 0.0, value_parser = distance)]
     margin: f64,
     /// Time for a pose, such as 1ms: bounds are the best known by then, which depend on the machine.
     #[arg(long, value_name = "TIME", value_parser = duration)]
@@ -165,7 +165,7 @@ impl Collide {
             answers => format!("\n{}", summary(answers, &questions, seconds)),
         });
         if let Some(impact) = &impact {
-            console.say(impact_text(impact));
+            console.say(impact_text(impact, questions.scene().band()));
         }
         if let Some(file) = &self.output {
             console.say(format!(
@@ -290,6 +290,7 @@ impl Collide {
             "seconds": seconds,
             "impact": impact.map(|impact| json!({
                 "free_until": impact.free_until,
+                "hit_by": impact.hit_by,
                 "verdict": impact.verdict,
                 "quaternion": impact.pose.map(|pose| pose.quaternion()),
                 "translation": impact.pose.map(|pose| <[f64; 3]>::from(pose.translation)),
@@ -394,7 +395,7 @@ fn one_pose(answer: &Answer) -> String {
     lines.join("\n")
 }
 
-fn impact_text(impact: &Impact) -> String {
+fn impact_text(impact: &Impact, band: f64) -> String {
     match &impact.pose {
         None => format!(
             "The path is free to its end, time {}",
@@ -403,13 +404,21 @@ fn impact_text(impact: &Impact) -> String {
         Some(pose) => {
             let [w, x, y, z] = pose.quaternion();
             let [a, b, c]: [f64; 3] = pose.translation.into();
-            let then = match impact.verdict {
-                Verdict::Hit => "there the solids meet",
-                Verdict::Free | Verdict::Undecided => "from there on they may meet",
+            let then = match impact.hit_by {
+                Some(time) => format!("the solids have met by time {}", Figure(time)),
+                None => "no balls inside both are known to meet later".to_owned(),
+            };
+            let sharper = if band > 0.0 {
+                format!(
+                    ". In between the gap is below {}, which the balls leave open; a finer --grid narrows it",
+                    Figure(band)
+                )
+            } else {
+                String::new()
             };
             format!(
-                "First impact: the path is free until time {} (in poses from the first), and {then}, at pose \
-                 {w},{x},{y},{z},{a},{b},{c}",
+                "First impact: the path is free until time {} (in poses from the first), at pose \
+                 {w},{x},{y},{z},{a},{b},{c}, and {then}{sharper}",
                 Figure(impact.free_until)
             )
         }

@@ -9,7 +9,7 @@ use crate::geometry::morphology::sweep::{SweepOptions, sample_count, sweep};
 use crate::geometry::morphology::{
     MorphologyError, MorphologyOptions, closed, dilated, offset, opened,
 };
-use crate::options::values::{above_zero, not_negative};
+use crate::options::values::{above_zero, distance, length};
 use crate::options::{MachineOptions, SampleGrid};
 use crate::threads;
 use clap::{Args, Subcommand};
@@ -42,7 +42,7 @@ enum Operation {
         #[arg(value_name = "SOLID")]
         first: String,
         /// Distance, in the unit of the file.
-        #[arg(long, value_name = "LENGTH", allow_negative_numbers = true)]
+        #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = length)]
         distance: f64,
         #[command(flatten)]
         common: Common,
@@ -69,7 +69,7 @@ enum Operation {
         step: Option<f64>,
         /// How far each pose may vary, as a radius of geodesic balls: sqrt(2 angle^2 + shift^2), in radians and the
         /// file's unit.
-        #[arg(long, value_name = "RADIUS", default_value_t = 0.0, value_parser = not_negative)]
+        #[arg(long, value_name = "RADIUS", default_value_t = 0.0, value_parser = distance)]
         tolerance: f64,
         #[command(flatten)]
         common: Common,
@@ -181,12 +181,6 @@ impl Morph {
         let operation = &self.operation;
         let common = operation.common();
         let allowed = common.machine.memory.or_else(memory::default_limit);
-        if let Operation::Offset { distance, .. } = operation
-            && !distance.is_finite()
-        {
-            return Err(Failure::input("--distance is not a finite number")
-                .remedy("give a length in the unit of the file"));
-        }
         let poses = operation.pose_file().map(pose_file).transpose()?;
         let inputs: Vec<SolidInput> = (operation.solids().into_iter())
             .map(|text| SolidInput::read(text, &common.solids, allowed))

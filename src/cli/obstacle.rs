@@ -9,7 +9,7 @@ use crate::geometry::obstacle::pairs::PairSums;
 use crate::geometry::obstacle::regions::free_regions;
 use crate::geometry::obstacle::{mirrored, sum};
 use crate::options::MachineOptions;
-use crate::options::values::at_least_one;
+use crate::options::values::{at_least_one, length};
 use crate::output::files::whole_file::StagedFile;
 use crate::threads;
 use clap::Args;
@@ -57,7 +57,8 @@ pub struct Obstacle {
         long,
         value_name = "LENGTH",
         default_value_t = 0.0,
-        allow_negative_numbers = true
+        allow_negative_numbers = true,
+        value_parser = length
     )]
     offset: f64,
     /// Write no ball that lies in another one; without it the table holds a ball for each pair.
@@ -90,10 +91,6 @@ impl Obstacle {
     }
 
     fn compute(&self, console: Console) -> Result<(), Failure> {
-        if !self.offset.is_finite() {
-            return Err(Failure::input("--offset is not a finite number")
-                .remedy("give a length in the unit of the files"));
-        }
         let allowed = self
             .machine
             .memory

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 
 use crate::geometry::motion::geodesic::{angle, distance, path};
 use crate::geometry::motion::tolerance::geodesic_ball;
-use crate::options::values::{at_least_one, not_negative};
+use crate::options::values::{at_least_one, distance as radius};
 use crate::output::tables::pose_list::write_list;
 use clap::{Args, Subcommand};
 use knotdock_scoring::se3::Pose;
@@ -56,7 +56,7 @@ enum Question {
         #[arg(value_name = "P", allow_hyphen_values = true)]
         center: String,
         /// Distance up to which poses are taken.
-        #[arg(long, value_name = "RADIUS", value_parser = not_negative)]
+        #[arg(long, value_name = "RADIUS", value_parser = radius)]
         radius: f64,
         /// Number of poses.
         #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = at_least_one)]

@@ -2,6 +2,8 @@
 
 use std::ops::RangeInclusive;
 
+use knotdock_structures::LARGEST_LENGTH;
+
 /// How ranges are stated.
 pub(super) const BOUND: &str = "it must be ";
 
@@ -100,15 +102,34 @@ pub fn duration(text: &str) -> Result<f64, String> {
         }
     };
     above_zero(number.trim())
-        .map(|value| value * unit)
+        .map(|value| (value * unit).min(LONGEST))
         .map_err(|_| "write a number above zero and a unit, such as 5s or 2min".to_owned())
 }
+
+/// Seconds after which no run ends; longer times are no limits either, and clocks can add this one.
+const LONGEST: f64 = 1e9;
 
 /// A finite number, zero or above.
 pub fn not_negative(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.is_finite() && value >= 0.0 => Ok(value + 0.0),
         _ => Err("it must be a finite number, zero or above".to_owned()),
+    }
+}
+
+/// A length of at most [`LARGEST_LENGTH`], of either sign.
+pub fn length(text: &str) -> Result<f64, String> {
+    match text.parse::<f64>() {
+        Ok(value) if value.abs() <= LARGEST_LENGTH => Ok(value + 0.0),
+        _ => Err("it must be a number from -1e30 to 1e30".to_owned()),
+    }
+}
+
+/// A length of at most [`LARGEST_LENGTH`], zero or above.
+pub fn distance(text: &str) -> Result<f64, String> {
+    match length(text) {
+        Ok(value) if value >= 0.0 => Ok(value),
+        _ => Err("it must be a number from 0 to 1e30".to_owned()),
     }
 }
 

@@ -1,5 +1,11 @@
 //! A ball.
 
+/// Largest coordinate, radius or translation of a solid that is read: squares and cubes of lengths, and products of
+/// two cubes, stay finite.
+pub const LARGEST_LENGTH: f64 = 1e30;
+/// Smallest radius of a ball that is read: squares and cubes stay above zero.
+pub const SMALLEST_RADIUS: f64 = 1e-30;
+
 /// A ball.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Ball {

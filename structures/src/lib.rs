@@ -39,7 +39,7 @@ pub mod sphere_tree;
 #[cfg(all(test, feature = "mesh"))]
 mod test_support;
 
-pub use ball::Ball;
+pub use ball::{Ball, LARGEST_LENGTH, SMALLEST_RADIUS};
 pub use conformers::Conformers;
 pub use knots::Knots;
 pub use polar_atom::PolarAtom;

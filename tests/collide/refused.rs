@@ -62,6 +62,42 @@ fn bad_solids() {
     }
 }
 
+/// Squares of such lengths overflowed: a pose was "free" at no distance.
+#[test]
+fn lengths_that_cannot_be_computed_with() {
+    let place = Place::new();
+    for (file, text) in [
+        ("poses.csv", "1,0,0,0,1,2,3\n1,0,0,0,0,-1e300,3\n"),
+        ("far.csv", "0,0,0,1\n0,1e200,0,1\n"),
+        ("large.csv", "0,0,0,1\n0,0,0,1e31\n"),
+        ("tiny.csv", "0,0,0,1\n0,0,0,1e-200\n"),
+        ("heavy.csv", "0,0,0,1,1\n0,0,0,1,1e200\n"),
+        ("robot.json", "{\"radius\": 1,\n\"center\": [1e99, 0, 0]}"),
+    ] {
+        place.write(file, text);
+        let error = match file {
+            "poses.csv" => place.refused(&["ball.csv", "ball.csv", "--poses", file]),
+            _ => place.refused(&[file, "ball.csv"]),
+        };
+        assert_eq!(error["line"], 2, "{file}: {error}");
+    }
+    place.refused(&["ball.csv", "ball.csv", "--pose", "1,0,0,0,1e300,0,0"]);
+    place.refused(&["ball.csv", "ball.csv", "--margin", "1e300"]);
+    // What is just within the limits is computed.
+    place.write("large.csv", "0,0,0,1e30\n");
+    let object = place.collide(&["large.csv", "large.csv", "--pose", "1,0,0,0,1e30,0,0"]);
+    let row = &object["poses"][0];
+    let lens = 5.0 * std::f64::consts::PI / 12.0 * 1e90;
+    assert!((row["overlap_volume"].as_f64().unwrap() / lens - 1.0).abs() < 1e-12);
+    for name in ["distance_low", "overlap_energy", "force_x", "torque_x"] {
+        assert!(row[name].as_f64().unwrap().is_finite(), "{row}");
+    }
+    let object = place.collide(&["ball.csv", "ball.csv", "--pose", "1,0,0,0,1e30,0,0"]);
+    let row = &object["poses"][0];
+    assert_eq!(row["verdict"], "free");
+    assert!((row["distance_low"].as_f64().unwrap() / 1e30 - 1.0).abs() < 1e-12);
+}
+
 #[test]
 fn bad_options_and_files_in_the_way() {
     let place = Place::new();

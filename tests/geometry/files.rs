@@ -37,10 +37,9 @@ fn the_obstacle_of_two_balls_is_a_ball_in_every_format() {
         ],
     );
     for set in ["inner", "outer"] {
-        assert!(
-            (volume(&found, set) / ball(2.5) - 1.0).abs() < 5e-3,
-            "{found}"
-        );
+        let error = found[set]["volume_error"].as_f64().unwrap();
+        let off = (volume(&found, set) - ball(2.5)).abs();
+        assert!(off <= error && error < 1e-10, "{found}");
         assert_eq!(found[set]["free_regions"], 1);
     }
     assert_eq!(found["epsilon"], 0.0);
@@ -203,6 +202,29 @@ fn poses_are_measured_and_written() {
         );
     }
     assert!(run(folder.path(), &["se3", "--help"]).status.success());
+    // The squares of such lengths overflowed: a ball of poses took forever, and distances were infinite.
+    let far = "1,0,0,0,1e200,0,0";
+    let ball = ["se3", "ball", "1,0,0,0,0,0,0", "-o", "far.csv", "--radius"];
+    for refused in [
+        &["se3", "distance", "1,0,0,0,0,0,0", far][..],
+        &["se3", "interpolate", "1,0,0,0,0,0,0", far, "-o", "far.csv"],
+        &[&ball[..], &["1e308"]].concat(),
+        &["morph", "offset", "small.csv", "--distance", "1e200"],
+        &["obstacle", "small.csv", "small.csv", "--offset", "1e200"],
+    ] {
+        assert_eq!(
+            run(folder.path(), refused).status.code(),
+            Some(2),
+            "{refused:?}"
+        );
+    }
+    let found = object(folder.path(), &[&ball[..], &["1e30"]].concat());
+    assert_eq!(found["poses"], 100);
+    // A path of 1e30 steps needs more memory than there is; it was sampled until there was none.
+    let poses = "1,0,0,0,0,0,0\n1,0,0,0,1e30,0,0\n";
+    fs::write(folder.path().join("long.csv"), poses).unwrap();
+    let sweep = ["morph", "sweep", "small.csv", "--path", "long.csv"];
+    assert_eq!(run(folder.path(), &sweep).status.code(), Some(2));
 }
 
 /// Threads change no byte.

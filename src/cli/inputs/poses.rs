@@ -8,6 +8,7 @@ use crate::output::tables::pose_list::read_list;
 use crate::output::tables::poses_reader::PoseTableError;
 use clap::Args;
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::LARGEST_LENGTH;
 
 use crate::cli::messages::failure::Failure;
 
@@ -112,10 +113,14 @@ pub fn pose(text: &str) -> Result<Pose, Failure> {
     let refused = |message: String, remedy: &str| Failure::input(message).remedy(remedy);
     let numbers = text.split(',').map(|part| {
         let number = part.trim().parse::<f64>().ok();
-        number.filter(|number| number.is_finite()).ok_or_else(|| {
+        let number = number.filter(|number| number.abs() <= LARGEST_LENGTH);
+        number.ok_or_else(|| {
             refused(
-                format!("--pose: '{}' is not a finite number", part.trim()),
-                "give seven finite numbers, qw,qx,qy,qz,tx,ty,tz, with commas between them",
+                format!(
+                    "--pose: '{}' is not a number from -1e30 to 1e30",
+                    part.trim()
+                ),
+                "give seven numbers, qw,qx,qy,qz,tx,ty,tz, with commas between them",
             )
         })
     });
@@ -161,6 +166,7 @@ mod tests {
             "1.002,0,0,0,0,0,0",
             "0,0,0,0,0,0,0",
             "1e300,1e300,0,0,0,0,0",
+            "1,0,0,0,1e31,0,0",
         ] {
             let failure = pose(text).unwrap_err();
             assert_eq!(failure.exit_code(), 2, "{text}");

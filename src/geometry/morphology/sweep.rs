@@ -33,6 +33,18 @@ struct Samples {
     steps: Vec<(f64, f64)>,
 }
 
+/// Steps between two poses, so many that no point within `reach` of the frame's origin moves by more than `step`; and
+/// the angle and length of all of them together.
+fn steps_between(ends: &[Pose], reach: f64, step: f64) -> (f64, [f64; 2]) {
+    let [from, to] = [ends[0], ends[1]];
+    let (turn, shift) = (
+        angle(&from, &to),
+        (to.translation - from.translation).norm(),
+    );
+    let count = ((turn * reach + shift) / step).ceil().max(1.0);
+    (count, [turn, shift])
+}
+
 /// Poses along a path, so dense that no point within `reach` of the frame's origin moves by more than `step`.
 fn samples(path: &[Pose], reach: f64, step: f64) -> Samples {
     let mut found = Samples {
@@ -40,11 +52,7 @@ fn samples(path: &[Pose], reach: f64, step: f64) -> Samples {
         steps: vec![(0.0, 0.0)],
     };
     for pair in path.windows(2) {
-        let (turn, shift) = (
-            angle(&pair[0], &pair[1]),
-            (pair[1].translation - pair[0].translation).norm(),
-        );
-        let count = ((turn * reach + shift) / step).ceil().max(1.0);
+        let (count, [turn, shift]) = steps_between(pair, reach, step);
         let one = (turn / count, shift / count);
         for number in 1..=count as usize {
             if let Some(last) = found.steps.last_mut() {
@@ -60,8 +68,11 @@ fn samples(path: &[Pose], reach: f64, step: f64) -> Samples {
 }
 
 /// Poses that [`sweep`] would sample.
-pub fn sample_count(a: &Bracket, path: &[Pose], options: &SweepOptions) -> usize {
-    samples(path, reach(a), options.step).poses.len()
+pub fn sample_count(a: &Bracket, path: &[Pose], options: &SweepOptions) -> u64 {
+    let reach = reach(a);
+    let legs = path.windows(2);
+    let steps = legs.map(|pair| steps_between(pair, reach, options.step).0);
+    (steps.sum::<f64>() as u64).saturating_add(1)
 }
 
 /// Farthest distance of an outer ball's centre from the frame's origin.
@@ -86,9 +97,9 @@ pub fn sweep(
     sweep: &SweepOptions,
     options: &MorphologyOptions,
 ) -> Result<Bracket, MorphologyError> {
-    let samples = samples(path, reach(a), sweep.step);
     let balls = a.inner.len().max(a.outer.len()) as u64;
-    options.room_for(balls.saturating_mul(samples.poses.len() as u64))?;
+    options.room_for(balls.saturating_mul(sample_count(a, path, sweep)))?;
+    let samples = samples(path, reach(a), sweep.step);
     let origin = path.first().map_or(a.origin, |pose| pose.apply(a.origin));
     let varied = |far: f64| sweep.tolerance * (0.5 * far * far + 1.0).sqrt();
     let moved = |balls: &'_ [Ball], margin: &dyn Fn(f64, (f64, f64)) -> f64| {

@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::LARGEST_LENGTH;
 
 use crate::bounded_read::{MAX_POSES, read_bounded};
 use crate::output::tables::cells::unquoted_row;
@@ -206,13 +207,13 @@ impl PlacementColumns {
         let float = |(column, place): (&'static str, usize)| {
             let field = record.get(place).unwrap_or("").trim();
             match field.parse::<f64>() {
-                Ok(value) if value.is_finite() => Ok(value),
+                Ok(value) if value.abs() <= LARGEST_LENGTH => Ok(value),
                 _ => Err(PoseTableError::Field {
                     path: path.to_owned(),
                     line,
                     column,
                     field: field.to_owned(),
-                    expected: "a finite number",
+                    expected: "a number from -1e30 to 1e30",
                 }),
             }
         };

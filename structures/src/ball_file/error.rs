@@ -38,15 +38,15 @@ pub enum BallFileErrorKind {
         expected: usize,
     },
     /// A field is no number.
-    #[error("{what} is '{value}', not a finite number")]
+    #[error("{what} is '{value}', not a number from -1e30 to 1e30")]
     Number {
         /// Name of the field.
         what: &'static str,
         /// Its text, cut short.
         value: String,
     },
-    /// A radius is zero or negative.
-    #[error("the radius is {0}; it must be above zero")]
+    /// A radius is zero, negative or too small to compute with.
+    #[error("the radius is {0:?}; it must be 1e-30 or above")]
     Radius(f64),
     /// A weight is negative.
     #[error("the weight is {0}; it must not be negative")]

@@ -19,7 +19,7 @@ pub use error::{BallFileError, BallFileErrorKind};
 
 use std::path::Path;
 
-use crate::ball::Ball;
+use crate::ball::{Ball, LARGEST_LENGTH};
 
 /// Endings of files of balls, and how each is read.
 const ENDINGS: [(&str, Format); 4] = [
@@ -88,10 +88,10 @@ pub fn parse(path: &Path, bytes: &[u8], group: Option<&str>) -> Result<BallFile,
     })
 }
 
-/// A finite number.
+/// A number of at most [`LARGEST_LENGTH`].
 fn number(text: &str) -> Option<f64> {
     let number = text.trim().parse::<f64>().ok();
-    number.filter(|number| number.is_finite())
+    number.filter(|number| number.abs() <= LARGEST_LENGTH)
 }
 
 #[cfg(test)]

@@ -7,7 +7,7 @@
 use super::document::{self, Node, Value};
 use super::error::{BallFileErrorKind, Fault};
 use super::{BallFile, number};
-use crate::ball::Ball;
+use crate::ball::{Ball, SMALLEST_RADIUS};
 
 /// Key under which foam lists the spheres of one decomposition.
 const FOAM_LIST: &str = "spheres";
@@ -60,8 +60,8 @@ fn collect(node: &Node, name: &str, groups: &mut Vec<Group>) -> Result<(), Fault
         Value::Scalar(_) => Ok(()),
         Value::Mapping(_) if node.get("radius").is_some() => {
             let (ball, line) = (sphere(node)?, node.line);
-            if ball.center.iter().any(|x| !x.is_finite()) {
-                return Err(BallFileErrorKind::Center.at(line));
+            if ball.radius > 0.0 && ball.radius < SMALLEST_RADIUS {
+                return Err(BallFileErrorKind::Radius(ball.radius).at(line));
             }
             let at = groups.iter().position(|group| group.name == name);
             let at = at.unwrap_or_else(|| {

@@ -2,7 +2,7 @@
 
 use super::error::{BallFileErrorKind, Fault};
 use super::{BallFile, number};
-use crate::ball::Ball;
+use crate::ball::{Ball, SMALLEST_RADIUS};
 
 /// Names of the columns, in the order in which they stand without a header.
 const COLUMNS: [(&str, &str); 5] = [
@@ -100,7 +100,7 @@ fn row(record: &[&str], places: &Places) -> Result<(Ball, Option<f64>), BallFile
         *value = field(column, places.place[column])?;
     }
     let [x, y, z, radius] = numbers;
-    if radius <= 0.0 {
+    if radius < SMALLEST_RADIUS {
         return Err(BallFileErrorKind::Radius(radius));
     }
     let weight = places.weight.map(|place| field(4, place)).transpose()?;

@@ -51,7 +51,7 @@ pub enum MeshErrorKind {
     },
     /// A coordinate is NaN, infinite, or so large that its square overflows.
     #[error(
-        "{what} has coordinate {value:e}; coordinates must be finite and below 1e70 in magnitude"
+        "{what} has coordinate {value:e}; coordinates must be finite and at most 1e30 in magnitude"
     )]
     Coordinate {
         /// 1-based line, in text formats.

@@ -1,11 +1,9 @@
 //! Vertices and faces of a file, and what was left out.
 
+use crate::LARGEST_LENGTH;
 use crate::mesh::error::MeshErrorKind;
 use crate::mesh::repair::faces::Faces;
 use crate::mesh::repair::rounding::Digits;
-
-/// Largest magnitude of a coordinate: squares and cubes of lengths stay finite.
-const LARGEST_COORDINATE: f64 = 1e70;
 
 /// Vertices and faces in the file's order and unit.
 #[derive(Debug, Default)]
@@ -99,8 +97,8 @@ impl Notes {
                     "",
                 ),
                 LeftOut::VertexWithoutPlace => (
-                    "a vertex with a coordinate that is not finite or beyond 1e70 was",
-                    "vertices with a coordinate that is not finite or beyond 1e70 were",
+                    "a vertex with a coordinate that is not finite or beyond 1e30 was",
+                    "vertices with a coordinate that is not finite or beyond 1e30 were",
                     "; no face uses it",
                 ),
             };
@@ -133,7 +131,7 @@ impl Soup {
                 u32::MAX
             )));
         };
-        let bad = |value: &f64| value.is_nan() || value.abs() > LARGEST_COORDINATE;
+        let bad = |value: &f64| value.is_nan() || value.abs() > LARGEST_LENGTH;
         if let Some(value) = position.into_iter().find(bad) {
             self.unplaced.push(Unplaced {
                 vertex,
