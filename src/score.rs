@@ -9,7 +9,7 @@ use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::transform::truncation::{ModeOrder, Selection, Tail, total};
+use knotdock_scoring::transform::truncation::{ModeOrder, Selection, rms_left_out, total};
 use knotdock_scoring::truncated::TruncatedCorrelation;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
@@ -60,9 +60,7 @@ pub struct Rung {
     pub value: f64,
     /// |value - exact|.
     pub error: f64,
-    /// The most that the modes left out can add at this rotation, wherever the ligand is: the sum of their magnitudes.
-    pub bound: f64,
-    /// What they add in the root mean square over all translations.
+    /// What the modes left out add at this rotation, in the root mean square over all translations.
     pub rms: f64,
     /// Seconds of a new translation with its gradient, the rotation prepared.
     pub seconds: f64,
@@ -283,14 +281,12 @@ impl Ladder<'_> {
         let mut work = few.workspace();
         let prepared = few.prepare(&pose.rotation, &mut work);
         let (value, _) = prepared.gradient(&pose.translation, &mut work);
-        let tail = Tail::of(self.plan.modes(), selection, self.magnitudes);
         Rung {
             modes: most,
             modes_kept: few.modes(),
             value,
             error: (value - self.exact).abs(),
-            bound: tail.bound,
-            rms: tail.rms,
+            rms: rms_left_out(self.plan.modes(), selection, self.magnitudes),
             seconds: seconds(|| prepared.gradient(&pose.translation, &mut work).0),
             seconds_prepare: seconds(|| few.prepare(&pose.rotation, &mut work).modes() as f64),
             seconds_new_rotation: seconds(|| few.gradient(pose, &mut work).0),

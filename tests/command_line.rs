@@ -203,3 +203,43 @@ fn a_run_says_little_unless_asked() {
     let quiet = printed(place.path(), &format!("{dock} -o quiet -q"));
     assert_eq!(quiet, "");
 }
+
+/// A file whose name is not UTF-8 was "invalid UTF-8 in one or more arguments", and a folder of -o was recorded as
+/// another one.
+#[cfg(unix)]
+#[test]
+fn words_that_are_not_utf_8_are_refused_by_name() {
+    use std::ffi::OsStr;
+    use std::os::unix::ffi::OsStrExt;
+    let place = place();
+    let name = OsStr::from_bytes(b"caf\xe9.pdb");
+    fs::copy(place.path().join("ligand.pdb"), place.path().join(name)).unwrap();
+    let given = OsStr::new("ligand.pdb");
+    for words in [
+        [OsStr::new("dock"), OsStr::new("receptor.pdb"), name],
+        [OsStr::new("inspect"), OsStr::new("receptor.pdb"), name],
+        [OsStr::new("score"), name, given],
+        [
+            OsStr::new("dock"),
+            given,
+            OsStr::from_bytes(b"--out=caf\xe9.pdb"),
+        ],
+    ] {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("knotdock"));
+        let output = command
+            .current_dir(place.path())
+            .args(words)
+            .arg("--json")
+            .output();
+        let output = output.unwrap();
+        assert_eq!(output.status.code(), Some(2));
+        let object: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        let [message, remedy] =
+            ["message", "remedy"].map(|part| object["error"][part].as_str().unwrap());
+        assert!(
+            message.contains(r"caf\xE9.pdb") && message.contains("UTF-8"),
+            "{message}"
+        );
+        assert!(remedy.contains("rename"), "{remedy}");
+    }
+}

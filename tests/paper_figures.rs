@@ -15,7 +15,7 @@ use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::grid::Grid;
 use knotdock::geometry::gap::spectrum::{self, Body, FrequencyBox, Kernel, exact};
 use knotdock::geometry::gap::ways;
-use knotdock_scoring::transform::truncation::{Selection, Tail};
+use knotdock_scoring::transform::truncation::{Selection, rms_left_out};
 use knotdock_scoring::truncated::RotationSpectrum;
 use knotdock_structures::mesh::{Mesh, from_triangles};
 use minkowski::{Knot, Node, gap_of_balls, gap_of_nodes};
@@ -105,7 +105,7 @@ fn the_residual_falls_to_rounding() {
         let dominant = Selection::by_magnitude(&whole.grid.modes, &magnitudes, 1 << power);
         let low = Selection::low_frequency(&whole.grid.modes, 1 << power);
         let [by_magnitude, by_frequency] = [&dominant, &low].map(error);
-        let tail = Tail::of(&whole.grid.modes, &dominant, &magnitudes).rms / whole.peak();
+        let tail = rms_left_out(&whole.grid.modes, &dominant, &magnitudes) / whole.peak();
         assert!((by_magnitude - tail).abs() < 1e-9 + 1e-6 * tail);
         assert!(by_magnitude < last && by_magnitude <= by_frequency + 1e-15);
         last = by_magnitude;

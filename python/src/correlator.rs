@@ -1,10 +1,15 @@
 //! The correlation of two sets of balls, for scores of one's own.
+//!
+//! Threads share a correlator: each waits for its buffers, without holding the interpreter.
 
-use knotdock_scoring::engine::EngineOptions;
+use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
+
+use knotdock::cli::memory_limit;
+use knotdock_scoring::engine::{EngineMemory, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::{Correlator as Inner, GridPose};
+use knotdock_scoring::{Correlation, Correlator as Inner, CorrelatorError, GridPose};
 use knotdock_structures::knots::Knots;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -17,10 +22,10 @@ use crate::failure::bad_input;
 /// The score of a pose is that of `knotdock dock` by shape alone: -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0), where g is
 /// the weighted overlap of balls grown by an offset. It is equation 53 of Behandish and Ilies (2016), with the sign that
 /// their text gives. Lengths are in the unit of the centres.
-#[pyclass(unsendable, module = "knotdock._knotdock")]
+#[pyclass(frozen, module = "knotdock._knotdock")]
 pub struct Correlator {
-    inner: Inner,
-    exact: ExactScorer,
+    inner: Mutex<Inner>,
+    exact: Arc<ExactScorer>,
 }
 
 /// Numbers that a pose is made of: its score, quaternion (w, x, y, z) and translation.
@@ -63,57 +68,65 @@ impl Correlator {
             tolerance,
         };
         const REMEDY: &str = "check the arrays and the ranges of the options";
+        let plan = py.detach(|| Plan::new(&receptor, &ligand, options));
+        let plan = plan.map_err(|error| bad_input(py, error, REMEDY))?;
+        let needed = bytes(&plan, &receptor, &ligand);
+        // Python would end with its process where the system has no memory.
+        if let Some(free) = memory_limit().filter(|&free| needed > free) {
+            let [needed, free] = [needed, free].map(|bytes| bytes as f64 / 1e9);
+            let message =
+                format!("this takes {needed:.1} GB of memory, and {free:.1} GB may be taken");
+            let remedy = "use a coarser spacing or resolution, or fewer distinct radii";
+            return Err(bad_input(py, message, remedy));
+        }
         let inner = py.detach(|| Inner::new(&receptor, &ligand, options));
         let inner = inner.map_err(|error| bad_input(py, error, REMEDY))?;
-        let exact = inner
-            .exact_scorer()
-            .map_err(|error| bad_input(py, error, REMEDY))?;
-        Ok(Self { inner, exact })
+        Ok(Self {
+            exact: inner.exact_scorer(),
+            inner: Mutex::new(inner),
+        })
     }
 
     /// Scores of all translations at a rotation, a unit quaternion (w, x, y, z): an array (nx, ny, nz).
     fn correlate<'py>(
-        &mut self,
+        &self,
         py: Python<'py>,
         quaternion: [f64; 4],
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
-        let rotation = unit(quaternion);
-        let inner = &mut self.inner;
-        let correlation = inner.correlate(&rotation);
-        let correlation = correlation.map_err(|error| bad_input(py, error, "normalise it"))?;
-        let (size, scores) = (correlation.size(), correlation.scores().to_vec());
+        let (size, scores) = self.at(py, quaternion, |correlation| {
+            (correlation.size(), correlation.scores().to_vec())
+        })?;
         scores.into_pyarray(py).reshape(size)
     }
 
     /// The best translations at a rotation, best first, none a neighbour of another: (score, quaternion, translation)
     /// each.
-    fn peaks(&mut self, py: Python<'_>, quaternion: [f64; 4], count: usize) -> PyResult<Vec<Row>> {
-        let rotation = unit(quaternion);
-        let correlation = self.inner.correlate(&rotation);
-        let correlation = correlation.map_err(|error| bad_input(py, error, "normalise it"))?;
-        Ok(correlation.peaks(count).iter().map(row).collect())
+    fn peaks(&self, py: Python<'_>, quaternion: [f64; 4], count: usize) -> PyResult<Vec<Row>> {
+        self.at(py, quaternion, |correlation| {
+            correlation.peaks(count).iter().map(row).collect()
+        })
     }
 
     /// The pose of a voxel (i, j, k) of [`Self::correlate`] at a rotation: (quaternion, translation).
     fn pose(
-        &mut self,
+        &self,
         py: Python<'_>,
         quaternion: [f64; 4],
         voxel: [usize; 3],
     ) -> PyResult<([f64; 4], [f64; 3])> {
-        let rotation = unit(quaternion);
-        let correlation = self.inner.correlate(&rotation);
-        let correlation = correlation.map_err(|error| bad_input(py, error, "normalise it"))?;
-        let [nx, ny, nz] = correlation.size();
-        let [i, j, k] = voxel;
-        if i >= nx || j >= ny || k >= nz {
-            return Err(bad_input(
+        let pose = self.at(py, quaternion, |correlation| {
+            let [nx, ny, nz] = correlation.size();
+            let [i, j, k] = voxel;
+            let is_inside = i < nx && j < ny && k < nz;
+            is_inside.then(|| correlation.pose((i * ny + j) * nz + k))
+        })?;
+        let pose = pose.ok_or_else(|| {
+            bad_input(
                 py,
                 "the voxel is outside of the grid",
                 "see the shape of the array",
-            ));
-        }
-        let pose = correlation.pose((i * ny + j) * nz + k);
+            )
+        })?;
         Ok((pose.quaternion(), pose.translation.into()))
     }
 
@@ -133,10 +146,15 @@ impl Correlator {
                 "give a row of each a pose",
             ));
         }
-        let poses = quaternions.into_iter().zip(translations);
-        let poses: Vec<Pose> = poses
-            .map(|(turn, shift)| Pose::from_parts(turn, shift))
-            .collect();
+        let poses = quaternions.into_iter().zip(translations).enumerate();
+        let poses = poses.map(|(row, (turn, shift))| {
+            scaled_pose(turn, shift).ok_or_else(|| {
+                let message = format!("row {row}: {turn:?} and {shift:?} are no pose");
+                let remedy = "give finite numbers, and a quaternion that is not zero";
+                bad_input(py, message, remedy)
+            })
+        });
+        let poses: Vec<Pose> = poses.collect::<PyResult<_>>()?;
         let exact = &self.exact;
         let scores: Vec<f64> =
             py.detach(|| poses.iter().map(|pose| exact.score_only(pose)).collect());
@@ -146,26 +164,82 @@ impl Correlator {
     /// Voxels along x, y and z.
     #[getter]
     fn size(&self) -> [usize; 3] {
-        self.inner.plan().size()
+        self.inner().plan().size()
     }
 
     /// Length of a voxel's edge.
     #[getter]
     fn spacing(&self) -> f64 {
-        self.inner.plan().spacing()
+        self.inner().plan().spacing()
     }
 
     /// Components of the lifted axis, each of which costs a transform a rotation.
     #[getter]
     fn rank(&self) -> usize {
-        self.inner.rank()
+        self.inner().rank()
     }
 
     /// Error of that rank at the best voxels of a few rotations, relative to the best score there.
     #[getter]
     fn rank_error(&self) -> f64 {
-        self.inner.rank_error()
+        self.inner().rank_error()
     }
+
+    /// Error against the exact sum at the best voxels of a few rotations and a sweep through their grids, relative to
+    /// the best score there: at most the tolerance, for one that it exceeds is refused.
+    #[getter]
+    fn error(&self) -> f64 {
+        self.inner().error()
+    }
+}
+
+impl Correlator {
+    fn inner(&self) -> MutexGuard<'_, Inner> {
+        // A panic leaves buffers that the next correlation overwrites.
+        self.inner.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    /// What `read` takes from the correlation at a rotation. Others of Python's threads run meanwhile.
+    fn at<T: Send>(
+        &self,
+        py: Python<'_>,
+        quaternion: [f64; 4],
+        read: impl FnOnce(Correlation<'_, f32>) -> T + Send,
+    ) -> PyResult<T> {
+        let rotation = unit(quaternion);
+        let found = py.detach(|| self.inner().correlate(&rotation).map(read));
+        found.map_err(|error: CorrelatorError| bad_input(py, error, "normalise it"))
+    }
+}
+
+/// The pose of a quaternion of any length and a translation; `None` if they are none.
+fn scaled_pose(quaternion: [f64; 4], translation: [f64; 3]) -> Option<Pose> {
+    let largest = quaternion
+        .iter()
+        .fold(0.0f64, |most, part| most.max(part.abs()));
+    let is_finite = quaternion
+        .iter()
+        .chain(&translation)
+        .all(|part| part.is_finite());
+    if !is_finite || largest == 0.0 {
+        return None;
+    }
+    // Squares of the parts may overflow or vanish.
+    let is_usual = (1e-100..1e100).contains(&largest);
+    let quaternion = quaternion.map(|part| if is_usual { part } else { part / largest });
+    Some(Pose::from_parts(quaternion, translation))
+}
+
+/// Memory of a correlator in bytes: spectra, engine and workspace, and the tables of the exact sum.
+fn bytes(plan: &Plan, receptor: &Knots, ligand: &Knots) -> u64 {
+    let memory = EngineMemory::new::<f32>(plan, ligand);
+    let functions = plan.functions();
+    let radii = |knots: &Knots| knots.radius_classes().0.len() as u64;
+    let sums = radii(receptor) * radii(ligand);
+    memory.spectrum * functions as u64
+        + memory.choice(functions)
+        + memory.transform
+        + sums * ExactScorer::bytes_a_radius_sum(plan.kernel())
 }
 
 fn row(pose: &GridPose) -> Row {

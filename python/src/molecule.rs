@@ -17,8 +17,8 @@ pub struct Molecule(Inner);
 impl Molecule {
     /// Reads `FILE` or `FILE:H,L`, with words such as `--waters=keep`.
     #[staticmethod]
-    fn from_words(py: Python<'_>, file: &str, words: Vec<OsString>) -> PyResult<Self> {
-        let read = py.detach(|| knotdock::cli::read_molecule(file, words));
+    fn from_words(py: Python<'_>, file: OsString, words: Vec<OsString>) -> PyResult<Self> {
+        let read = py.detach(|| knotdock::cli::read_molecule(&file, words));
         read.map(Self).map_err(|failure| exception(py, &failure))
     }
 

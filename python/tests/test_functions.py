@@ -1,6 +1,8 @@
 """The other commands, molecules and correlations."""
 
+import concurrent.futures
 import json
+import os
 import pathlib
 import subprocess
 import sys
@@ -96,6 +98,69 @@ def test_a_correlation_is_the_exact_sum(helices):
         correlator.correlate([2.0, 0, 0, 0])
     with pytest.raises(knotdock.InputError, match="outside"):
         correlator.pose(turn, [10**6, 0, 0])
+
+
+@pytest.fixture(scope="module")
+def balls():
+    numbers = np.random.default_rng(0)
+    receptor = np.c_[numbers.normal(size=(20, 3)) * 4, np.full(20, 1.8)]
+    return receptor, np.c_[numbers.normal(size=(8, 3)) * 3, np.full(8, 1.7)]
+
+
+def test_exact_scores_take_quaternions_of_any_length_and_refuse_what_is_no_pose(balls):
+    # Those of NaN, of zero and of 1e-200 were 0.0, and 1e200 gave the score of another pose.
+    correlator = knotdock.Correlator(*balls)
+    turn, rest = np.array([[0.3, -0.2, 0.8, 0.4]]), np.zeros((1, 3))
+    score = correlator.score(turn, rest)
+    assert score[0] != 0.0
+    for length in (2.0, 1e-200, 1e200, 1e-308, 1e308):
+        assert correlator.score(length * turn, rest) == pytest.approx(score, rel=1e-12)
+    for bad in (0.0 * turn, np.full((1, 4), np.nan), np.array([[np.inf, 0, 0, 0]])):
+        with pytest.raises(ValueError, match="row 0"):
+            correlator.score(bad, rest)
+        with pytest.raises(ValueError, match="norm"):
+            correlator.correlate(bad[0])
+    for bad in (np.nan, np.inf):
+        with pytest.raises(ValueError, match="row 1"):
+            correlator.score(np.tile(turn, (2, 1)), np.array([[0, 0, 0], [0, bad, 0]]))
+
+
+def test_threads_share_a_correlator(balls):
+    # Use from another thread, and of more peaks than memory has room for, ended in a panic.
+    correlator = knotdock.Correlator(*balls)
+    turns = [[1.0, 0, 0, 0], [0.6, 0.8, 0, 0], [0, 0, 0.6, 0.8]] * 4
+    alone = [correlator.peaks(turn, 5) for turn in turns]
+    with concurrent.futures.ThreadPoolExecutor(4) as threads:
+        assert list(threads.map(lambda turn: correlator.peaks(turn, 5), turns)) == alone
+    all_peaks = correlator.peaks(turns[0], 2**62)
+    assert all_peaks[:5] == alone[0] and 5 < len(all_peaks) < np.prod(correlator.size)
+    assert correlator.peaks(turns[0], 0) == []
+
+
+def test_correlations_state_their_error_and_refuse_what_they_cannot_keep(balls):
+    correlator = knotdock.Correlator(*balls)
+    grid = correlator.correlate([1.0, 0, 0, 0])
+    assert 0.0 < correlator.error <= 1e-2
+    voxels = np.argwhere(grid > 0.5 * grid.max())
+    poses = [correlator.pose([1.0, 0, 0, 0], voxel) for voxel in voxels]
+    exact = correlator.score(*(np.array(part) for part in zip(*poses, strict=True)))
+    assert np.abs(exact - grid[tuple(voxels.T)]).max() < 1e-2 * exact.max()
+    # Half of the resolution is 2.25.
+    with pytest.raises(ValueError, match=r"spacing of 2.25"):
+        knotdock.Correlator(*balls, spacing=4.0)
+    with pytest.raises(ValueError, match="memory"):
+        knotdock.Correlator(*balls, spacing=0.02)
+    # A second difference of the kernel, to 1e-14 of itself: less than double precision holds.
+    with pytest.raises(ValueError, match="best score"):
+        knotdock.Correlator(*balls, lambda_=1.0, offset=1e-7)
+
+
+def test_names_that_are_not_utf_8_are_refused_by_name(helices, tmp_path):
+    name = os.fsdecode(os.fsencode(tmp_path) + b"/caf\xe9.pdb")
+    pathlib.Path(name).write_bytes(pathlib.Path(helices[0]).read_bytes())
+    for call in (knotdock.Molecule.read, knotdock.inspect):
+        with pytest.raises(ValueError, match=r"caf\\xE9.pdb"):
+            call(name)
 
 
 def test_any_command_runs_by_its_name(tmp_path):

@@ -11,6 +11,7 @@
 
 use crate::engine::{
     ChosenRank, CpuEngine, EngineOptions, Plan, PlanError, ReceptorSpectra, Workspace, choose_rank,
+    measured_error,
 };
 use crate::exact::ExactScorer;
 use crate::grid_turn::GridTurn;
@@ -22,12 +23,13 @@ use crate::so3::rotation_set;
 use crate::terms::effect::Term;
 use crate::transform::Real;
 use knotdock_structures::Knots;
-use knotdock_structures::knots::KnotsError;
 use nalgebra::UnitQuaternion;
 use std::sync::Arc;
 
 /// Rotations from which the choice of the rank takes its probes.
 const PROBE_SET: usize = 60;
+/// Largest tolerance of a plan.
+const MAX_TOLERANCE: f64 = 0.1;
 /// Largest departure of a rotation's norm from 1.
 const NORM_TOLERANCE: f64 = 1e-6;
 
@@ -39,13 +41,25 @@ pub enum CorrelatorError {
     Plan(#[from] PlanError),
     /// The tolerance is below what the floating-point type resolves.
     #[error(
-        "a tolerance of {tolerance:e} is finer than this precision allows; use {finest:e} or more, or Correlator::<f64>"
+        "a tolerance of {tolerance:e} is finer than this precision allows; use {finest:e} or more, or Correlator::<f64> in Rust"
     )]
     Precision {
         /// The tolerance.
         tolerance: f64,
         /// The finest one of this precision.
         finest: f64,
+    },
+    /// The error that was measured against the exact sum is above the tolerance.
+    #[error(
+        "the fast path is off by {reachable:.1e} of the best score, more than the tolerance of {tolerance:e}; {remedy}"
+    )]
+    Unreachable {
+        /// The tolerance.
+        tolerance: f64,
+        /// The error, as a share of the best score.
+        reachable: f64,
+        /// Options that serve.
+        remedy: String,
     },
     /// A rotation is no unit quaternion.
     #[error("a rotation has the norm {0}; it must be a unit quaternion")]
@@ -56,12 +70,13 @@ pub enum CorrelatorError {
 ///
 /// In single precision by default, which serves tolerances down to 1e-4; `Correlator::<f64>` serves those down to 1e-8.
 pub struct Correlator<T: Real = f32> {
-    receptor: Knots,
     ligand: Knots,
     plan: Arc<Plan>,
     spectra: ReceptorSpectra<T>,
     engine: CpuEngine<T>,
+    exact: Arc<ExactScorer>,
     rank_error: f64,
+    error: f64,
     workspace: Workspace<T>,
 }
 
@@ -116,15 +131,35 @@ impl<T: Real> Correlator<T> {
         let plan = Arc::new(plan);
         let spectra = ReceptorSpectra::new(&plan, receptor, ligand, Quantity::Score);
         let probes = rotation_set(PROBE_SET);
-        let ChosenRank { engine, error } = choose_rank(&plan, &spectra, ligand, &probes);
+        let chosen = choose_rank(&plan, &spectra, ligand, &probes);
+        let ChosenRank {
+            engine,
+            error: rank_error,
+        } = chosen;
+        let exact = ExactScorer::with_effects(plan.kernel(), receptor, ligand, plan.effects())
+            .map_err(PlanError::from)?;
+        // Other terms and weights below zero reward as well.
+        let mut weights = receptor.weights.iter().chain(&ligand.weights);
+        let is_rewarded = plan.kernel().rewards()
+            || !plan.effects().is_empty()
+            || weights.any(|&weight| weight < 0.0);
+        let error = measured_error(&engine, &exact, &probes, is_rewarded);
+        if error.is_nan() || error > tolerance {
+            return Err(CorrelatorError::Unreachable {
+                tolerance,
+                reachable: error,
+                remedy: remedy(&plan, error),
+            });
+        }
         Ok(Self {
-            receptor: receptor.clone(),
             ligand: ligand.clone(),
             workspace: engine.workspace(),
             plan,
             spectra,
             engine,
-            rank_error: error,
+            exact: Arc::new(exact),
+            rank_error,
+            error,
         })
     }
 
@@ -163,13 +198,16 @@ impl<T: Real> Correlator<T> {
         self.rank_error
     }
 
+    /// Largest error against the exact sum at the best voxels of three rotations and a sweep through their grids,
+    /// relative to the best score there (to the largest magnitude if the kernel rewards nothing). At most the tolerance:
+    /// [`Self::with_terms`] refuses one that it exceeds.
+    pub fn error(&self) -> f64 {
+        self.error
+    }
+
     /// The exact pair sum of the same score.
-    ///
-    /// # Errors
-    /// [`KnotsError`] on knots that cannot be summed.
-    pub fn exact_scorer(&self) -> Result<ExactScorer, KnotsError> {
-        let (receptor, ligand) = (&self.receptor, &self.ligand);
-        ExactScorer::with_effects(self.plan.kernel(), receptor, ligand, self.plan.effects())
+    pub fn exact_scorer(&self) -> Arc<ExactScorer> {
+        Arc::clone(&self.exact)
     }
 
     /// The receptor's sampled potentials, which give the score and its gradient between voxels.
@@ -213,7 +251,7 @@ impl<T: Real> Correlation<'_, T> {
     ///
     /// Takes the correlation, whose scores it overwrites.
     pub fn peaks(self, count: usize) -> Vec<GridPose> {
-        let mut found: Vec<Peak> = Vec::with_capacity(count);
+        let mut found: Vec<Peak> = Vec::new();
         let size = self.size();
         let Workspace { grid, row_best, .. } = &mut *self.workspace;
         find_peaks(
@@ -230,6 +268,22 @@ impl<T: Real> Correlation<'_, T> {
     fn grid_pose(&self, voxel: usize, score: f64) -> GridPose {
         let pose = self.pose(voxel);
         GridPose { pose, score, voxel }
+    }
+}
+
+/// What to change where the fast path misses its tolerance by `error`.
+fn remedy(plan: &Plan, error: f64) -> String {
+    let half = 0.5 * plan.options().kernel.resolution;
+    if plan.spacing() > half * (1.0 + 1e-9) {
+        return format!("use a spacing of {half} or less, half of the resolution, or none");
+    }
+    // The tolerance decides on more than the error found here: the grid, the window, the rank.
+    let digit = 10f64.powf((2.0 * error).log10().floor());
+    let tolerance = digit * (2.0 * error / digit).ceil();
+    if tolerance <= MAX_TOLERANCE {
+        format!("use a tolerance of {tolerance:.0e} or more")
+    } else {
+        "the score cancels to less than the transforms resolve; use a larger offset or another lambda".to_owned()
     }
 }
 
@@ -270,7 +324,7 @@ mod tests {
             };
             let mut correlator = Correlator::new(&a, &b, options).unwrap();
             assert!(correlator.rank_error() <= tolerance / 3.0);
-            let scorer = correlator.exact_scorer().unwrap();
+            let scorer = correlator.exact_scorer();
             let potentials = correlator.potential_grid();
             let correlation = correlator.correlate(&some_rotation()).unwrap();
             let best = correlation.best();

@@ -1,8 +1,10 @@
 //! The tests of the crate, one module a subject, in one program: each further one would link all crates again.
 //! `cargo test -p knotdock-scoring --test all SUBJECT` runs a subject.
 
+
 mod scene;
 
+mod cancellation;
 mod effects;
 mod fast_path;
 #[cfg(feature = "gpu")]

@@ -1,6 +1,6 @@
 //! What other programs call in their own process: commands by their words, and structures as commands read them.
 
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 
 use crate::options::InputOptions;
 use crate::options::text;
@@ -11,7 +11,8 @@ use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::listener::Listener;
-use crate::cli::{parsed, run, unparsed};
+use crate::cli::messages::suggestions::UTF_8;
+use crate::cli::{in_utf8, parsed, run, unparsed};
 
 /// Runs a command for a program that hears what it says; the exit code: 0, or that of the parts which failed.
 ///
@@ -35,7 +36,8 @@ pub fn call(words: Vec<OsString>, listener: &dyn Listener) -> Result<u8, Failure
 ///
 /// # Errors
 /// [`Failure`] for words that are no options of reading, and where the file cannot be read.
-pub fn read_molecule(file: &str, words: Vec<OsString>) -> Result<Molecule, Failure> {
+pub fn read_molecule(file: &OsStr, words: Vec<OsString>) -> Result<Molecule, Failure> {
+    let file = in_utf8(file).map_err(|fault| Failure::input(fault).remedy(UTF_8))?;
     let options: InputOptions = text::read(words).map_err(|error| unparsed(&error))?;
     let [input] = Input::read_all([file], &options.reading())?;
     Ok(input.molecule)

@@ -33,12 +33,13 @@ mod se3;
 mod tradeoff;
 
 use std::borrow::Cow;
-use std::ffi::OsString;
+use std::ffi::{OsStr, OsString};
 use std::sync::LazyLock;
 
 use crate::options::text::first_paragraph;
 use crate::output::records::program::{FEATURES, VERSION_WITH_COMMIT};
 use crate::threads;
+pub use arguments::memory::default_limit as memory_limit;
 use arguments::program::{ProgramArguments, with_negative_numbers};
 pub use calls::{call, read_molecule};
 use clap::error::ErrorKind;
@@ -176,10 +177,25 @@ fn command_line() -> clap::Command {
 
 /// The command line as read.
 fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
+    for word in arguments.iter().skip(1) {
+        in_utf8(word).map_err(|fault| {
+            let text = format!("{fault}\n\n  tip: {}", suggestions::UTF_8);
+            command_line().error(ErrorKind::InvalidUtf8, text)
+        })?;
+    }
     command_line()
         .try_get_matches_from(arguments)
         .and_then(|matches| Cli::from_arg_matches(&matches))
         .map_err(suggestions::explained)
+}
+
+/// A word as text.
+///
+/// Records, tables and scripts hold names of files as text in UTF-8, so that a word of another encoding would name
+/// another file there.
+fn in_utf8(word: &OsStr) -> Result<&str, String> {
+    word.to_str()
+        .ok_or_else(|| format!("{word:?} is not text in UTF-8"))
 }
 
 /// Whether a terminal may show arguments as they stand.

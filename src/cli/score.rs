@@ -215,7 +215,6 @@ fn ladder_text(scored: &PoseScore, unit: &str) -> String {
             "modes",
             "value",
             "error",
-            "bound",
             "rms",
             "translation, µs",
             "new rotation, µs",
@@ -228,7 +227,6 @@ fn ladder_text(scored: &PoseScore, unit: &str) -> String {
             row.modes.to_string(),
             format!("{:.3}", row.value),
             format!("{:.2e}", row.error),
-            format!("{:.2e}", row.bound),
             format!("{:.2e}", row.rms),
             format!("{:.1}", 1e6 * row.seconds),
             format!("{:.1}", 1e6 * row.seconds_new_rotation),
@@ -250,8 +248,7 @@ fn ladder_text(scored: &PoseScore, unit: &str) -> String {
          Gradient: {} per {unit}, {} per radian about the ligand's centre\n\
          {sensitivity}\
          \n{}\n\
-         Modes: of {}, conjugates counted. Bound: the most that the modes left out can add at this rotation; rms: what they add over \
-         all translations.\n{}",
+         Modes: of {}, conjugates counted. Error: at this pose; rms: what the modes left out add over all translations.\n{}",
         scored.exact,
         scored.unfiltered,
         scored.scale,

@@ -45,6 +45,38 @@ impl Preset {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dock::scene::Scene;
+    use crate::options::text;
+    use knotdock_scoring::terms::effect::Effect;
+    use knotdock_scoring::terms::pose::POSE_TERMS;
+    use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
+
+    /// `shape` turned effects off, and still ranked by `unresolved` and `termini`. A pose term that is added to the
+    /// registry must be off too.
+    #[test]
+    fn shape_leaves_no_other_term_on() {
+        let words = Preset::Shape.entries().unwrap().into_iter();
+        let words = words.flat_map(|entry| entry.words);
+        let options: DockOptions = text::read(words.map(Into::into)).unwrap();
+        for term in POSE_TERMS {
+            assert_eq!(options.terms.weights.get(term.id), 0.0, "{}", term.id);
+        }
+        let [receptor, ligand] = ["receptor", "ligand"].map(|side| {
+            let root = env!("CARGO_MANIFEST_DIR");
+            let path = format!("{root}/structures/examples/1ppe_{side}_unbound.pdb");
+            read(&InputSpec::whole(path), &ReadOptions::default()).unwrap()
+        });
+        let scene = |options| Scene::new(&receptor, &ligand, options).unwrap();
+        assert!(scene(&options).rescorer(&options).is_none());
+        let decisions = scene(&options).decisions;
+        assert!(
+            decisions
+                .iter()
+                .all(|d| d.on == (d.effect == Effect::Shape))
+        );
+        let default = DockOptions::default();
+        assert!(scene(&default).rescorer(&default).is_some());
+    }
 
     #[test]
     fn presets_can_be_read_and_say_what_they_are_for() {

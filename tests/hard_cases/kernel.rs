@@ -194,13 +194,13 @@ fn a_sharp_ball_rings_near_its_edge_only() {
 /// Skins from none to one wider than the bodies, lambda from 0 to 1e3, alpha from a point to a sharp ball: the fast
 /// path stays within its tolerance of the pair sum.
 ///
-/// Its measure is the best score, as everywhere, where there is a reward to speak of. Without one (lambda up to 1, no
-/// skin) the best "score" is what the low-pass rings to, and the measure is the largest |G|. The pair sum's own
-/// tables are good to 1e-9 of the slices. For lambda = 1 and r0 = 1e-3 Å the slices cancel to r0^2 = 1e-6 of
-/// themselves, so the bound includes that part.
+/// Its measure is the best score. Without a reward (lambda = 0, no skin) that is what the low-pass rings to, and the
+/// measure is the largest |G|.
 ///
 /// First failed at lambda = 100 and 1e3, at a tolerance of 1e-2, with errors of 1.2e-2: there the best score is a
-/// hundredth of the largest |G| instead of a twentieth.
+/// hundredth of the largest |G| instead of a twentieth. Then at lambda = 1 and thin skins, where the slices cancel to
+/// r0^2 of themselves: the lifted series was resolved for the kernel and not for that difference, and was off by up to
+/// 523 tolerances, which a bound of 1e-9 of the slices, nine times the best score, let pass.
 #[test]
 fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
@@ -212,7 +212,10 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
             (1e3, 2.0, 2.0),
             (10.0, 0.0, 2.0),
             (10.0, 1e-9, 2.0),
+            (1.0, 0.03, 2.0),
             (1.0, 1e-3, 2.0),
+            (1.01, 1e-2, 2.0),
+            (1.0, 1e-2, f64::INFINITY),
             (10.0, 20.0, 2.0),
             (10.0, 2.0, 0.25),
             (10.0, 2.0, 1.0),
@@ -230,15 +233,11 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
             let (error, best) = pair.error(some_rotation(), 97, 100);
             let grid = pair.correlate(&some_rotation()).grid;
             let largest = grid.iter().fold(0.0f64, |a, b| a.max(b.abs()));
-            let scale = if lambda <= 1.0 || offset < 1e-6 {
-                largest
-            } else {
-                best
-            };
-            let slices = (1.0 + lambda).powi(2) * 700.0;
+            let has_reward = lambda > 0.0 && offset > 1e-6;
+            let scale = if has_reward { best } else { largest };
             println!("{lambda} {offset} {alpha}: {error:.2e} of {best:.3e}, {largest:.3e}");
             assert!(
-                error <= tolerance * scale + 1e-9 * slices,
+                error <= tolerance * scale,
                 "lambda {lambda}, r0 {offset}, alpha {alpha} at {tolerance:e}: {error:e}, best {best:e}, \
                  largest {largest:e}"
             );

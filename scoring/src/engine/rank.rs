@@ -2,16 +2,12 @@
 
 use super::cpu::CpuEngine;
 use super::plan::Plan;
+use super::probes::Probes;
 use super::receptor_spectra::ReceptorSpectra;
 use crate::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::UnitQuaternion;
 use std::sync::Arc;
-
-/// Rotations at which ranks are compared.
-const PROBES: usize = 3;
-/// Best voxels of each probe rotation at which ranks are compared.
-const BEST: usize = 50;
 
 /// An engine of the lowest rank that stays within a third of its plan's tolerance.
 pub struct ChosenRank<T: Real> {
@@ -57,59 +53,4 @@ pub fn choose_rank<T: Real>(
         }
     }
     chosen
-}
-
-/// Reference values for the comparison of ranks: the best voxels of a few rotations at full rank.
-struct Probes<T> {
-    samples: Vec<Sample<T>>,
-    /// The best value of all.
-    best: T,
-}
-
-/// The best voxels of one rotation at full rank.
-struct Sample<T> {
-    rotation: UnitQuaternion<f64>,
-    /// Voxels with their values.
-    values: Vec<(usize, T)>,
-}
-
-impl<T: Real> Probes<T> {
-    /// Correlates the probe rotations at full rank.
-    fn new(set: &[UnitQuaternion<f64>], full: &CpuEngine<T>) -> Self {
-        let mut work = full.workspace();
-        let mut samples: Vec<Sample<T>> = Vec::with_capacity(PROBES);
-        let mut best = T::min_positive_value();
-        for probe in 0..PROBES {
-            let rotation = set[(2 * probe + 1) * set.len() / (2 * PROBES)];
-            full.correlate(&rotation, &mut work);
-            // A grid has fewer voxels than 32 bits number.
-            let mut order: Vec<u32> = (0..work.grid.len() as u32).collect();
-            let count = BEST.min(order.len() - 1);
-            order.select_nth_unstable_by(count, |&a, &b| {
-                let value = |voxel: u32| work.grid[voxel as usize].wide();
-                let (first, second) = (value(a), value(b));
-                second.total_cmp(&first).then(a.cmp(&b))
-            });
-            let values: Vec<(usize, T)> = order[..count]
-                .iter()
-                .map(|&v| (v as usize, work.grid[v as usize]))
-                .collect();
-            best = values.iter().fold(best, |best, value| best.max(value.1));
-            samples.push(Sample { rotation, values });
-        }
-        Self { samples, best }
-    }
-
-    /// Largest error of an engine at the probes' best voxels, as a share of the best.
-    fn error(&self, engine: &CpuEngine<T>) -> f64 {
-        let mut work = engine.workspace();
-        let mut error = T::zero();
-        for Sample { rotation, values } in &self.samples {
-            engine.correlate(rotation, &mut work);
-            for &(voxel, exact) in values {
-                error = error.max((work.grid[voxel] - exact).abs() / self.best);
-            }
-        }
-        error.wide()
-    }
 }

@@ -122,6 +122,11 @@ impl ExactScorer {
         Self::with_effects(kernel, receptor, ligand, &[])
     }
 
+    /// Memory of the tables in bytes, for each distinct sum of a receptor's and a ligand's radius.
+    pub fn bytes_a_radius_sum(kernel: &RankingKernel) -> u64 {
+        tables::bytes_of(kernel)
+    }
+
     /// Prepares two sets of knots for shape and further terms, whose kernels must have passed the filter of `kernel`.
     ///
     /// # Errors

@@ -68,6 +68,16 @@ impl Places {
     }
 }
 
+/// Panels of a kernel's tables, without that of zeros.
+fn panels_of(kernel: &RankingKernel) -> f64 {
+    (kernel.reach() / kernel.panel() + 0.5).ceil().max(1.0)
+}
+
+/// Bytes of the tables of one radius sum.
+pub(super) fn bytes_of(kernel: &RankingKernel) -> u64 {
+    (panels_of(kernel) as u64 + 1) * size_of::<[Line; 4]>() as u64
+}
+
 /// Functions of a distance on so many panels, and the panel of zeros after them.
 fn lines_of<const COUNT: usize>(
     panels: f64,
@@ -98,7 +108,7 @@ impl PairTables {
         let mut distinct: Vec<f64> = sums.iter().flatten().copied().collect();
         distinct.sort_by(f64::total_cmp);
         distinct.dedup();
-        let panels = (kernel.reach() / kernel.panel() + 0.5).ceil().max(1.0);
+        let panels = panels_of(kernel);
         let panels_per_unit = (panels - 0.5) / kernel.reach();
         let lines = panels as usize + 1;
         let weights = kernel.options().slice_weights();

@@ -82,7 +82,8 @@ impl RankingKernel {
         let [_, last] = cone.ends();
         let q_max = stop * last;
         let quadrature = RadialTransform::new(bump, q_max);
-        let transform = Table::fit(q_max * 1.001, 0.125, |q| [quadrature.value(q)]);
+        // Good to 1e-13, for the slices of a score may cancel.
+        let transform = Table::fit(q_max * 1.001, 0.0625, |q| [quadrature.value(q)]);
         Ok(Self {
             options,
             cone,
@@ -188,6 +189,14 @@ impl RankingKernel {
         (0..1000)
             .map(|i| table.value(self.reach() * f64::from(i) / 1000.0)[3])
             .fold(0.0, f64::max)
+    }
+
+    /// Whether B&I's own kernel rewards a pair of balls at some distance. Without a reward (lambda = 0, no skin) the best
+    /// score is what the low-pass rings to.
+    pub(crate) fn rewards(&self) -> bool {
+        let high = self.cone.high - 2.0 * self.options.offset;
+        let extremes = self.options.extremes([self.cone.low, high]);
+        extremes.is_ok_and(|(reward, _)| reward > 0.0)
     }
 
     /// Distance in Å beyond which the score kernel of such a table stays below `threshold` in magnitude.

@@ -67,45 +67,98 @@ impl LiftedAxis {
         Self { period, profiles }
     }
 
-    /// The fewest modes whose series reproduces the kernel at all radius sums in use to `tolerance`, relative to the
-    /// largest transform value among them; at most 64, or 128 for a tolerance below 1e-7. Returns them with the error
-    /// reached.
+    /// The fewest modes whose series reproduces at all radius sums in use the kernel to `tolerance` and the score to ten
+    /// times that, each relative to its largest transform value. Returns them with the error reached, a tenth of the
+    /// score's if that is more; it is above the tolerance where too many modes would be needed.
+    ///
+    /// The score is checked by itself because its slices may cancel: for lambda = 1 and small r0 it is a second
+    /// difference along the axis, r0^2 of the kernel, to which high modes add more than to the kernel.
     pub fn for_tolerance(kernel: &RankingKernel, tolerance: f64) -> (Self, f64) {
-        let most = if tolerance < 1e-7 { 128 } else { 64 };
-        let full = Self::new(kernel, most);
-        let cone = kernel.cone();
-        let checks: Vec<f64> = (0..=12)
-            .map(|i| cone.low + (cone.high - cone.low) * f64::from(i) / 12.0)
-            .collect();
-        let exact: Vec<Vec<f64>> = checks.iter().map(|&sigma| kernel.profile(sigma)).collect();
-        let frequencies: Vec<f64> = (0..=16)
-            .map(|i| kernel.stop() * f64::from(i) / 16.0)
-            .collect();
-        let scale = exact
-            .iter()
-            .map(|profile| kernel.spectrum_of(profile, 0.0).abs())
-            .fold(f64::MIN_POSITIVE, f64::max);
-        let mut error = f64::INFINITY;
-        for modes in 2..=most {
+        let mut most = if tolerance < 1e-7 { 128 } else { 64 };
+        loop {
+            let full = Self::new(kernel, most);
+            let errors = full.errors(kernel);
+            // Of the score the whole series is the reference, so the last modes show nothing.
+            let found = (2..=most - most / 4).find(|&modes| errors[modes] <= tolerance);
+            let modes = match found {
+                Some(modes) => modes,
+                None if 2 * most > most_modes(kernel) => most - most / 4,
+                None => {
+                    most *= 2;
+                    continue;
+                }
+            };
             let axis = Self {
                 period: full.period,
                 profiles: full.profiles[..=modes].to_vec(),
             };
-            error = 0.0;
-            for (sigma, exact) in checks.iter().zip(&exact) {
-                let mut profile = axis.slice_profile(*sigma);
-                for (value, exact) in profile.iter_mut().zip(exact) {
-                    *value -= exact;
-                }
-                for &w in &frequencies {
-                    error = f64::max(error, kernel.spectrum_of(&profile, w).abs() / scale);
+            return (axis, errors[modes]);
+        }
+    }
+
+    /// Largest error of the series when cut after each mode, over radius sums and frequencies: of the kernel against
+    /// its definition, and a tenth of that of the score against the whole series, each relative to its largest
+    /// transform value.
+    fn errors(&self, kernel: &RankingKernel) -> Vec<f64> {
+        let cone = kernel.cone();
+        let frequencies: Vec<f64> = (0..=16)
+            .map(|i| kernel.stop() * f64::from(i) / 16.0)
+            .collect();
+        let modes: Vec<i64> = (0..self.profiles.len() as i64).collect();
+        // [frequency][mode]: K_k, twice that of k > 0, whose conjugates add the same.
+        let coefficients: Vec<Vec<Complex64>> = frequencies
+            .par_iter()
+            .map(|&w| {
+                let twice = |k: i64| if k == 0 { 1.0 } else { 2.0 };
+                let coefficient = |&k: &i64| twice(k) * self.coefficient(kernel, w, k);
+                modes.iter().map(coefficient).collect()
+            })
+            .collect();
+        let mut largest = vec![0.0f64; modes.len()];
+        for fold in [Quantity::Slice(0), Quantity::Score] {
+            let is_score = fold == Quantity::Score;
+            let skins = if is_score {
+                2.0 * kernel.options().offset
+            } else {
+                0.0
+            };
+            let mut errors = vec![0.0f64; modes.len()];
+            let mut scale = f64::MIN_POSITIVE;
+            for i in 0..=12 {
+                let sigma = cone.low + (cone.high - skins - cone.low) * f64::from(i) / 12.0;
+                let exact = (!is_score).then(|| kernel.profile(sigma));
+                let factors: Vec<Complex64> = modes
+                    .iter()
+                    .map(|&k| {
+                        let turn = Complex64::cis(-2.0 * PI * self.eta(k) * sigma);
+                        turn * self.fold_factor(kernel, fold, k)
+                    })
+                    .collect();
+                for (&w, coefficients) in frequencies.iter().zip(&coefficients) {
+                    let mut sum = 0.0;
+                    let terms = coefficients.iter().zip(&factors);
+                    let sums: Vec<f64> = terms
+                        .map(|(coefficient, factor)| {
+                            sum += (coefficient * factor).re;
+                            sum
+                        })
+                        .collect();
+                    let target = exact
+                        .as_ref()
+                        .map_or(sum, |profile| kernel.spectrum_of(profile, w));
+                    scale = scale.max(target.abs());
+                    for (error, sum) in errors.iter_mut().zip(sums) {
+                        *error = error.max((sum - target).abs());
+                    }
                 }
             }
-            if error <= tolerance {
-                return (axis, error);
+            // What the kernel must meet leaves room for the weights of the slices, which the score has in it.
+            let share = if is_score { 0.1 } else { 1.0 };
+            for (largest, error) in largest.iter_mut().zip(errors) {
+                *largest = largest.max(share * error / scale);
             }
         }
-        (full, error)
+        largest
     }
 
     /// Period P in Å.
@@ -155,14 +208,6 @@ impl LiftedAxis {
         }
     }
 
-    /// sum_k K_k exp(-2 pi i eta_k sigma) as a profile: the series' stand-in for `RankingKernel::profile`.
-    fn slice_profile(&self, sigma: f64) -> Vec<f64> {
-        self.profile(|axis, k| {
-            let turn = Complex64::cis(-2.0 * PI * axis.eta(k) * sigma);
-            if k == 0 { turn } else { 2.0 * turn }
-        })
-    }
-
     /// Re sum_{k >= 0} f_k K_k as a profile.
     fn profile(&self, factor: impl Fn(&Self, i64) -> Complex64) -> Vec<f64> {
         let mut sum = vec![0.0; self.profiles[0].0.len()];
@@ -174,4 +219,10 @@ impl LiftedAxis {
         }
         sum
     }
+}
+
+/// Most modes of a kernel's series that take seconds: profiles cost the square of its length in resolutions.
+fn most_modes(kernel: &RankingKernel) -> usize {
+    let length = kernel.reach() * kernel.stop();
+    (2e6 / (length * length)).clamp(128.0, 512.0) as usize
 }

@@ -113,42 +113,27 @@ impl Selection {
     }
 }
 
-/// What the modes that are left out can do to the values of a correlation, in its own unit.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tail {
-    /// The sum of their magnitudes: no value at any translation moves by more.
-    pub bound: f64,
-    /// The root of the sum of their squared magnitudes: by Parseval the root mean square of the error over all
-    /// translations.
-    pub rms: f64,
-}
-
-impl Tail {
-    /// The tail beyond a selection. With magnitudes of one rotation it holds at that rotation, with an envelope over
-    /// all rotations at each of them (then `rms` is an upper bound).
-    ///
-    /// # Panics
-    /// Where magnitudes or selection belong to another set.
-    pub fn of(modes: &ModeSet, selection: &Selection, magnitudes: &[f64]) -> Self {
-        assert_eq!(magnitudes.len(), modes.count, "one magnitude a mode");
-        assert_eq!(
-            selection.kept.len(),
-            modes.count,
-            "the selection of these modes"
-        );
-        let (mut sum, mut squares) = (0.0, 0.0);
-        modes.for_each(|place, _, multiplicity| {
-            if !selection.keeps(place) {
-                let magnitude = magnitudes[place];
-                sum += multiplicity * magnitude;
-                squares += multiplicity * magnitude * magnitude;
-            }
-        });
-        Self {
-            bound: sum,
-            rms: f64::sqrt(squares),
+/// Root mean square, over all translations of the box, of what the modes outside of a selection add to a correlation:
+/// by Parseval the root of the sum of their squared magnitudes.
+///
+/// At one translation magnitudes bound an error by their sum alone, which has all modes in phase and is too wide to use.
+///
+/// # Panics
+/// Where magnitudes or selection belong to another set.
+pub fn rms_left_out(modes: &ModeSet, selection: &Selection, magnitudes: &[f64]) -> f64 {
+    assert_eq!(magnitudes.len(), modes.count, "one magnitude a mode");
+    assert_eq!(
+        selection.kept.len(),
+        modes.count,
+        "the selection of these modes"
+    );
+    let mut squares = 0.0;
+    modes.for_each(|place, _, multiplicity| {
+        if !selection.keeps(place) {
+            squares += multiplicity * magnitudes[place] * magnitudes[place];
         }
-    }
+    });
+    squares.sqrt()
 }
 
 /// Number of modes in a set, conjugates counted.

@@ -152,17 +152,3 @@ impl TruncatedCorrelation {
         RotationSpectrum::new(Arc::clone(&self.layout), self.frame, *rotation, values)
     }
 }
-
-/// For every mode the most that |G^(w; R)| / volume can be at any rotation: sum over components of |H| times the knots'
-/// weights. With [`crate::transform::truncation::Tail::of`] it bounds a truncation over all rotations and translations.
-pub fn envelope<T: Real>(plan: &Plan, spectra: &ReceptorSpectra<T>, ligand: &Knots) -> Vec<f64> {
-    let components = components::of(plan, spectra, ligand.len());
-    let mut envelope = vec![0.0; plan.modes().count];
-    for component in &components {
-        let weight: f64 = component.knots.iter().map(|knot| knot.1.abs()).sum();
-        for (place, value) in envelope.iter_mut().enumerate() {
-            *value += component.mode(spectra, place).norm() * weight / plan.modes().volume();
-        }
-    }
-    envelope
-}

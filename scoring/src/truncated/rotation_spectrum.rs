@@ -67,8 +67,8 @@ impl RotationSpectrum {
         &self.rotation
     }
 
-    /// |G^(w; R)| / volume of every mode of the plan's set, 0 for those not in use: what [`crate::transform::truncation::Tail`] and
-    /// [`crate::transform::truncation::Selection::by_magnitude`] take. `count` is the number of modes in the set.
+    /// |G^(w; R)| / volume of every mode of the plan's set, 0 for those not in use: what [`crate::transform::truncation::rms_left_out`]
+    /// and [`crate::transform::truncation::Selection::by_magnitude`] take. `count` is the number of modes in the set.
     pub fn magnitudes(&self, count: usize) -> Vec<f64> {
         self.layout.magnitudes(&self.values, count)
     }

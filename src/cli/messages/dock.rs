@@ -147,7 +147,7 @@ fn error_text(outcome: &DockOutcome) -> Vec<String> {
     ]
 }
 
-/// Warning that the fast path was farther from the exact sum than the tolerance.
+/// Warning that the fast path was farther from the exact sum than the tolerance, or is on a grid that is too coarse.
 pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
     let (worst, tolerance) = (outcome.error.worst, plan.options.kernel.tolerance);
     if !worst.is_finite() {
@@ -156,6 +156,15 @@ pub fn error_warning(plan: &DockPlan, outcome: &DockOutcome) -> Option<String> {
             plan.options.kernel.resolution,
             plan.spacing,
             unit = plan.unit
+        ));
+    }
+    let half = 0.5 * plan.options.kernel.resolution;
+    if plan.spacing > half * (1.0 + 1e-9) {
+        return Some(format!(
+            "a grid spacing of {:.4} is above half of the resolution: the fast path was off by {worst:.1e} of the best \
+             score at worst. What is reported is exact, but other poses may have been missed; use --spacing {half} or \
+             less, or leave it out",
+            plan.spacing
         ));
     }
     (worst > tolerance).then(|| {

@@ -42,6 +42,9 @@ pub(super) use error::check_bodies;
 pub use options::EngineOptions;
 pub use pair_kernel::PairKernel;
 
+/// Most by which the largest |G| is taken to exceed the best score more than usual: that of the largest lambda.
+const WIDEST_RANGE: f64 = 5e4;
+
 /// A planned correlation.
 #[derive(Clone, Debug)]
 pub struct Plan {
@@ -266,12 +269,17 @@ impl Plan {
         check_tolerance(kernel_tolerance)?;
         let tolerance = options.tolerance;
         let radii = Radii::of(receptor, ligand);
+        let (least, widest) = radii.sums();
         // With a penalty beyond the usual the largest |G| grows by lambda^2 and the best score, the measure of errors,
-        // by lambda.
-        let dynamic_range = (options.kernel.lambda.abs() / 20.0).max(1.0);
+        // by lambda. Balls much larger than their skin earn less, too: their bumps are soft in proportion.
+        let of_penalty = options.kernel.lambda.abs() / 20.0;
+        let of_pairs = match options.kernel.extremes([least, widest])? {
+            (reward, largest) if reward > 0.0 && of_product.is_none() => largest / (20.0 * reward),
+            _ => 0.0,
+        };
+        let dynamic_range = of_penalty.max(of_pairs).clamp(1.0, WIDEST_RANGE);
         // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
         let reach_factor = 1.15 + 0.75 * (1e-2 * dynamic_range / kernel_tolerance).log10().max(0.0);
-        let (least, widest) = radii.sums();
         let kernel = RankingKernel::new(options.kernel, least, widest, reach_factor)?;
         let effects: Vec<ActiveTerm> = terms
             .into_iter()

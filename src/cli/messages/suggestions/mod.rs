@@ -40,6 +40,9 @@ fn instead_of_command(word: &str) -> Option<String> {
     find(&COMMANDS, word).map(str::to_owned)
 }
 
+/// What to do about a word that is not UTF-8.
+pub const UTF_8: &str = "rename the file, or link to it by a name in UTF-8";
+
 /// What to do about an error of the command line, where the field's word for something is at fault or one that is
 /// spelled alike.
 pub fn suggested(error: &clap::Error) -> Option<String> {
@@ -60,6 +63,7 @@ pub fn suggested(error: &clap::Error) -> Option<String> {
             .and_then(instead_of_command)
             .or_else(|| alike(ContextKind::SuggestedSubcommand)),
         ErrorKind::InvalidValue => alike(ContextKind::SuggestedValue),
+        ErrorKind::InvalidUtf8 => Some(UTF_8.to_owned()),
         _ => None,
     }
 }
