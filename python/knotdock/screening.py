@@ -27,7 +27,7 @@ _COUNTS = (
     "clusters",
     "cluster",
     "cluster_size",
-    "clashes",
+    "sharp_clashes",
     "restraints_met",
     "first_acceptable_rank",
 )

@@ -22,8 +22,9 @@ apart and docked again. With --also-bound they are docked beside the unbound one
 
 With --active N each docking gets N active residues of either side, as an experiment might find them. They are in
 contact in the known complex, and are drawn by the pair's id and the seed. With --restraints it gets distances
-likewise (scripts/benchmark/known_distances.py says which), and with --predictions probabilities of residues to be in
-contact (scripts/benchmark/simulated_predictions.py).
+likewise (scripts/benchmark/known_distances.py says which). With --predictions FOLDER it gets a predictor's
+probabilities of residues to be in contact: FOLDER holds ID_r.csv and ID_l.csv for each pair, with the columns of
+`knotdock dock --interface-receptor`.
 
 Needs Python 3.9 or later and nothing else.
 """
@@ -58,7 +59,6 @@ from docked_pairs import (
 from docking import find_program, measured, seeds, split_arguments, start_orientation
 from known_distances import KINDS, restraint_options
 from known_residues import active_residues
-from simulated_predictions import prediction_options
 from tables import RANKINGS, markdown, ranks_csv
 
 # Options of `knotdock dock` that this script sets itself.
@@ -113,7 +113,7 @@ def parse_arguments():
     add("--bound", type=names, default=[], metavar="SIDES", help="dock the bound structure of receptor, ligand or both")
     add("--also-bound", type=names, default=[], metavar="SIDES", help="likewise, as a further conformation")
     add("--active", type=int, default=0, metavar="N", help="known contact residues of either side (default: 0)")
-    add("--predictions", type=float, metavar="AUC", help="quality of interface predictions (default: none)")
+    add("--predictions", type=Path, metavar="FOLDER", help="interface predictions, ID_r.csv and ID_l.csv (default: none)")
     add("--restraints", choices=KINDS, help="known distances (default: none)")
     options = parser.parse_args(arguments)
     for owned in OWNED:
@@ -165,9 +165,9 @@ def run_one(options, program, pair, seed):
         settings["also_bound"] = options.also_bound
     if options.restraints:
         settings["restraints"] = options.restraints
-    if options.predictions:
-        settings["predictions"] = options.predictions
     try:
+        if options.predictions:
+            settings["predictions"] = [checksum(path) for path in predictions(options.predictions, pair["id"]).values()]
         files = {part: find_part(options.folder / pair["id"], part) for part in PARTS}
         files |= {f"{side}_unbound": files[f"{side}_bound"] for side in options.bound}
         settings["inputs"] = {part: checksum(path) for part, path in files.items()}
@@ -211,7 +211,8 @@ def dock_and_measure(options, folder, files, name, seed):
     if options.restraints:
         command += restraint_options(options.restraints, texts, name, seed, folder / "restraints.csv")
     if options.predictions:
-        command += prediction_options(options.predictions, texts, name, seed, folder)
+        for side, path in predictions(options.predictions, name).items():
+            command += [f"--interface-{side}", str(path)]
     cost = measured(command + options.dock_options, folder / "dock.log")
     # The system's figure for a child can be that of this script before it became the child; the program's own is not.
     timings = [json.loads(record.read_text())["timing"] for record in records_of(run)]
@@ -229,6 +230,11 @@ def dock_and_measure(options, folder, files, name, seed):
         "poses": first_ranks(qualities),
         "clusters": first_ranks([quality for _, quality in sorted(clusters.items())]),
     }
+
+
+def predictions(folder, name):
+    """The table of each side's interface predictions."""
+    return {side: folder / f"{name}_{side[0]}.csv" for side in ("receptor", "ligand")}
 
 
 def rotate(path, rotated, name, seed):

@@ -78,8 +78,7 @@ impl Candidate {
 
     /// Whether it was moved into the optimum of its sharp fit, as those are whose fits score.
     pub fn is_settled(&self) -> bool {
-        let score = self.sharp.and_then(|sharp| sharp.score);
-        score.is_some_and(|score| score > 0.0)
+        self.sharp.is_some_and(SharpPose::is_rewarded)
     }
 
     /// Whether the pose has left the grid of the search.

@@ -118,14 +118,14 @@ const KNOWN: [Known; 20] = [
     (
         "sharp_energy",
         "sharp energy",
-        "Energy at atomic resolution, RT",
+        "Energy of the optimum at atomic resolution, RT",
         Some(1),
         false,
     ),
     (
-        "clashes",
-        "clashes",
-        "Pairs of atoms that overlap by more than 0.5 Å",
+        "sharp_clashes",
+        "sharp clashes",
+        "Pairs of atoms of the optimum at atomic resolution that overlap by more than 0.5 Å",
         Some(0),
         false,
     ),

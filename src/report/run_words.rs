@@ -4,6 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
+use crate::named_columns::listed;
 use crate::output::tables::report::counted;
 use crate::report::html::escaped;
 use crate::report::run_data::active;
@@ -78,9 +79,20 @@ pub(super) fn summary(report: &RunReport, shown: usize) -> String {
         ));
     }
     if record["sharp"]["finding"] == "exact-fit" {
-        sentences.push(
-            "One fit at atomic resolution stands out, and the poses are ranked by it.".to_owned(),
-        );
+        let rewarded = (0..shown).filter(|&row| {
+            let sharp = report.table.field(row, "sharp");
+            sharp.is_some_and(|sharp| sharp.parse().is_ok_and(|sharp: f64| sharp > 0.0))
+        });
+        let ranks: Vec<String> = rewarded
+            .map(|row| report.table.rows()[row].rank.to_string())
+            .collect();
+        if !ranks.is_empty() {
+            sentences.push(format!(
+                "A fit at atomic resolution stands out and earns score for {} {}.",
+                if ranks.len() == 1 { "rank" } else { "ranks" },
+                listed(ranks.iter().map(String::as_str))
+            ));
+        }
     }
     for (index, side) in ["receptor", "ligand"].into_iter().enumerate() {
         let residues: Vec<String> = active(report, index)

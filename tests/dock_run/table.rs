@@ -10,7 +10,7 @@ use serde_json::Value;
 use super::run::*;
 
 const HEADER: &str = "rank,score,cluster,cluster_size,pose_score,search_score,shape,electrostatics,contact,restraint,\
-                      fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,other_copies,sharp,sharp_energy,clashes,z_score,\
+                      fine_contact,atom_pair,relaxed,active_residues,unresolved,termini,other_copies,sharp,sharp_energy,sharp_clashes,z_score,\
                       qw,qx,qy,qz,tx,ty,tz";
 const DIAGNOSTICS: &str =
     "cluster_score,refined,rotation,score_grid,score_unfiltered,slice_0,slice_r0,slice_2r0";

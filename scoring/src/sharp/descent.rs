@@ -1,4 +1,4 @@
-//! Levenberg-Marquardt descents over rigid moves, and several of them about a pose.
+//! Levenberg-Marquardt descents over rigid moves, several of them about a pose, and quasi-Newton steps to the minimum.
 
 use super::energy::{Energy, STIFFNESS};
 use super::slope::Slope;
@@ -21,6 +21,13 @@ const RAISED: f64 = 5.0;
 const SETTLED: (f64, f64) = (0.01, 0.02);
 /// A round ends with a step uphill that is shorter than this, Å.
 const SHORTEST: f64 = 0.005;
+/// Most quasi-Newton steps to the minimum, and halvings of a step.
+const POLISHING: usize = 40;
+const HALVINGS: usize = 6;
+/// Least gain of a step, as a share of that at first order.
+const SUFFICIENT: f64 = 1e-4;
+/// Gain at first order, RT, below which a step is not worth making: the energy of the list is in f32.
+const CONVERGED: f64 = 1e-3;
 /// Distance of the other starts about a pose, Å: about what a search's rotations and grid leave open.
 const AROUND: f64 = 1.5;
 
@@ -37,7 +44,10 @@ impl SharpFit {
     /// The optimum that a pose descends to; `None` if the bodies do not touch.
     pub fn descend(&self, pose: &Pose, list: &mut PairList) -> Option<Optimum> {
         let touches = list.begin(self, pose);
-        touches.then(|| self.rest(pose, &Move::none(), list))
+        touches.then(|| {
+            let at = self.rest(&Move::none(), list);
+            self.optimum(pose, &at, list)
+        })
     }
 
     /// The best of the optima that a pose and twelve places about it descend to: 1.5 Å to either side along the
@@ -46,7 +56,9 @@ impl SharpFit {
         if !list.begin(self, pose) {
             return None;
         }
-        let mut best = self.rest(pose, &Move::none(), list);
+        let first = self.rest(&Move::none(), list);
+        let mut best = first;
+        let mut least = list.slope(self, STIFFNESS, &best).energy.total();
         let axes = list.axes;
         let arc = AROUND / list.radius;
         for axis in axes.column_iter() {
@@ -57,22 +69,35 @@ impl SharpFit {
                     step.fixed_rows_mut::<3>(0)
                         .copy_from(&(sign * shift * axis));
                     step.fixed_rows_mut::<3>(3).copy_from(&(sign * turn * axis));
-                    let other = self.rest(pose, &Move::none().then(&step), list);
-                    if other.energy.total() < best.energy.total() {
-                        best = other;
+                    let other = self.rest(&Move::none().then(&step), list);
+                    let energy = list.slope(self, STIFFNESS, &other).energy.total();
+                    if energy < least {
+                        (best, least) = (other, energy);
                     }
                 }
             }
         }
-        Some(best)
+        let [first, best] = [first, best].map(|near| self.optimum(pose, &near, list));
+        Some(if best.energy.total() < first.energy.total() {
+            best
+        } else {
+            first
+        })
     }
 
-    /// Descends from a move of a pose to its optimum.
-    fn rest(&self, pose: &Pose, from: &Move, list: &mut PairList) -> Optimum {
+    /// Descends from a move of a pose to near an optimum; the list is made for where it ends.
+    fn rest(&self, from: &Move, list: &mut PairList) -> Move {
         let mut at = *from;
         for (stiffness, steps) in ROUNDS {
             at = self.round(&at, stiffness, steps, list);
         }
+        list.renew(self, &at);
+        at
+    }
+
+    /// The optimum that a move of a pose lies near.
+    fn optimum(&self, pose: &Pose, near: &Move, list: &mut PairList) -> Optimum {
+        let at = self.converged(near, list);
         let moved = self.moved(pose, &at, list);
         // At its printed digits, which give back the energy.
         let pose = Pose::from_parts(moved.quaternion(), moved.translation.into());
@@ -117,6 +142,53 @@ impl SharpFit {
         at
     }
 
+    /// The minimum that a move lies near: quasi-Newton steps (Broyden, Fletcher, Goldfarb and Shanno; Nocedal & Wright,
+    /// Numerical Optimization, 2nd ed., eq. 6.17), each halved until it goes downhill.
+    fn converged(&self, from: &Move, list: &mut PairList) -> Move {
+        let mut at = *from;
+        list.renew(self, &at);
+        let arc = 1.0 / list.radius;
+        let scale = Vector6::new(1.0, 1.0, 1.0, arc, arc, arc);
+        let mut here = list.slope(self, STIFFNESS, &at);
+        let Some(mut inverse) = here.damped(&scale, 1.0).try_inverse() else {
+            return at;
+        };
+        let mut gradient = here.by_step.gradient.component_mul(&scale);
+        for _ in 0..POLISHING {
+            let mut step = -inverse * gradient;
+            step /= (1.0 + (step.norm() / LONGEST).powi(2)).sqrt();
+            let value = here.energy.total();
+            let expected = -gradient.dot(&step);
+            if expected.is_nan() || expected < CONVERGED {
+                break;
+            }
+            let mut next = None;
+            for _ in 0..HALVINGS {
+                let moved = at.then(&step.component_mul(&scale));
+                list.renew(self, &moved);
+                let there = list.slope(self, STIFFNESS, &moved);
+                if there.energy.total() < value + SUFFICIENT * gradient.dot(&step) {
+                    next = Some((moved, there));
+                    break;
+                }
+                step *= 0.5;
+            }
+            let Some((moved, there)) = next else {
+                break;
+            };
+            let risen = there.by_step.gradient.component_mul(&scale);
+            let change = risen - gradient;
+            let along = change.dot(&step);
+            if along > 0.0 {
+                let rate = 1.0 / along;
+                let left = Matrix6::identity() - rate * step * change.transpose();
+                inverse = left * inverse * left.transpose() + rate * step * step.transpose();
+            }
+            (at, here, gradient) = (moved, there, risen);
+        }
+        at
+    }
+
     /// The pose that a move about an interface leads to from another.
     pub(super) fn moved(&self, pose: &Pose, at: &Move, list: &PairList) -> Pose {
         let about = list.middle + self.receptor_center;
@@ -130,6 +202,16 @@ impl SharpFit {
 impl Slope {
     /// A step downhill of at most [`LONGEST`], its rotation as an arc in Å; `None` if a number is not finite.
     fn step(&self, scale: &Vector6<f64>, damping: f64) -> Option<Vector6<f64>> {
+        let step = -self
+            .damped(scale, damping)
+            .cholesky()?
+            .solve(&self.by_step.gradient.component_mul(scale));
+        let length = step.norm();
+        Some(step / (1.0 + (length / LONGEST).powi(2)).sqrt())
+    }
+
+    /// The curvature with its damping, rotations as arcs in Å.
+    fn damped(&self, scale: &Vector6<f64>, damping: f64) -> Matrix6<f64> {
         let mut matrix: Matrix6<f64> = self
             .by_step
             .curvature
@@ -137,10 +219,6 @@ impl Slope {
         for axis in 0..6 {
             matrix[(axis, axis)] += damping * (DAMPING[0] * self.energy.contacts + DAMPING[1]);
         }
-        let step = -matrix
-            .cholesky()?
-            .solve(&self.by_step.gradient.component_mul(scale));
-        let length = step.norm();
-        Some(step / (1.0 + (length / LONGEST).powi(2)).sqrt())
+        matrix
     }
 }

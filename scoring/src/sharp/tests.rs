@@ -218,7 +218,7 @@ fn descents_end_in_optima() {
             }
         });
         let least = nearby.map(|pose| fit.energy(&pose).total());
-        at_rest += usize::from(least.fold(f64::INFINITY, f64::min) > found.energy.total() - 0.2);
+        at_rest += usize::from(least.fold(f64::INFINITY, f64::min) > found.energy.total() - 0.02);
     }
     assert!(
         optima > 20 && at_rest * 3 >= optima * 2,

@@ -5,10 +5,11 @@ use std::path::Path;
 
 use crate::dock::outcome::DockOutcome;
 use crate::dock::plan::DockPlan;
+use crate::named_columns::listed;
 use crate::options::EngineChoice;
 use crate::output::files::seal::REPORT;
 use crate::output::tables::report::counted;
-use crate::rank::sharp::SharpFinding;
+use crate::rank::sharp::{SharpFinding, SharpPose};
 use crate::shell_word::shell_word;
 use crate::tradeoff::choice::Chosen;
 use knotdock_scoring::terms::effect::Effect;
@@ -146,15 +147,30 @@ pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String
         ));
     }
     match outcome.sharp.as_ref().map(|sharp| sharp.finding) {
-        Some(SharpFinding::ExactFit) => {
-            lines.push("One fit at atomic resolution stands out and ranks first (--sharp off ranks without it)".to_owned());
-        }
+        Some(SharpFinding::ExactFit) => lines.extend(rewarded_text(outcome)),
         Some(SharpFinding::Requested) => {
             lines.push("Ranked by fits at atomic resolution, though none stands out".to_owned());
         }
         Some(SharpFinding::NoExactFit) | None => {}
     }
     lines.join("\n")
+}
+
+/// The ranks of the rows that earn score for a fit that stands out; `None` if there are none.
+fn rewarded_text(outcome: &DockOutcome) -> Option<String> {
+    let rows = outcome.poses.iter().enumerate();
+    let rewarded = rows.filter(|(_, row)| row.sharp.is_some_and(SharpPose::is_rewarded));
+    let ranks: Vec<String> = rewarded.map(|(row, _)| (row + 1).to_string()).collect();
+    let subject = match ranks.len() {
+        0 => return None,
+        1 => "Rank",
+        _ => "Ranks",
+    };
+    let earn = if ranks.len() == 1 { "earns" } else { "earn" };
+    Some(format!(
+        "{subject} {} {earn} score for a fit at atomic resolution that stands out (--sharp off ranks without it)",
+        listed(ranks.iter().map(String::as_str))
+    ))
 }
 
 /// Where the results are, and what can be done with them.

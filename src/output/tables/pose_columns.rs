@@ -6,7 +6,7 @@
 //! | `pose_score` | `search_score`, the pose terms and `other_copies` together |
 //! | `search_score` | exact correlation at the pose, which is the sum of the effects |
 //! | effects, pose terms | their weighted values by id; empty where one is off |
-//! | `sharp`, `sharp_energy`, `clashes` | the sharp fit; not with `--sharp off` |
+//! | `sharp`, `sharp_energy`, `sharp_clashes` | the sharp fit; not with `--sharp off` |
 //!
 //! Columns for diagnosis come last: what the fast path gave, and from where.
 
@@ -91,12 +91,12 @@ pub(crate) fn columns(
     columns
 }
 
-/// Columns of the sharp fit: what it adds to the pose score, then its energy (RT) and clashes.
+/// Columns of the sharp fit: what it adds to the pose score, then the energy (RT) and clashes of the optimum.
 fn of_sharp_fits() -> [PoseColumn; 3] {
     [
         optional("sharp", |row| row.sharp?.score),
         optional("sharp_energy", |row| Some(row.sharp?.energy)),
-        count("clashes", |row| Some(row.sharp?.clashes)),
+        count("sharp_clashes", |row| Some(row.sharp?.clashes)),
     ]
 }
 

@@ -19,8 +19,15 @@ pub(crate) use stage::{SharpInputs, optima};
 pub struct SharpPose {
     /// Energy of the optimum that the pose descends to, RT.
     pub energy: f64,
-    /// Pairs of atoms of that optimum that overlap by more than 0.5 Å.
+    /// Pairs of atoms of that optimum that overlap by more than 0.5 Å; the pose itself may have more.
     pub clashes: usize,
-    /// What it adds to the pose score; `None` where the run is ranked by the soft score.
+    /// What it adds to the pose score; `None` if the run is ranked by the soft score.
     pub score: Option<f64>,
+}
+
+impl SharpPose {
+    /// Whether it adds to the pose score. Then the pose is the optimum.
+    pub fn is_rewarded(self) -> bool {
+        self.score.is_some_and(|score| score > 0.0)
+    }
 }

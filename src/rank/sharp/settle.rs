@@ -1,16 +1,17 @@
-//! Poses put into their optima, where a run is ranked by sharp fits.
+//! Poses put into their optima, if a run is ranked by sharp fits.
 
 use super::SharpPose;
-use super::evidence::SharpFinding;
+use super::evidence::{MARGIN, REQUESTED, SCORE_PER_RT, SharpFinding};
 use super::stage::Optima;
 use crate::options::SharpChoice;
 use crate::rank::candidates::Candidate;
 use knotdock_scoring::exact_sum::ExactSum;
+use knotdock_scoring::sharp::Optimum;
 use knotdock_scoring::terms::pose::{Rescorer, Workspace};
 use rayon::prelude::*;
 
-/// Notes the optimum of each candidate. Where an exact fit stands out, or sharp fits are requested, the candidates whose
-/// fits score move into their optima, are scored there, and all are sorted anew.
+/// Notes the optimum of each candidate. If an exact fit stands out, or sharp fits are requested, the candidates that score
+/// more in their optima move there, and all are sorted anew.
 pub(crate) fn settle(
     candidates: &mut [Candidate],
     optima: &Optima,
@@ -22,9 +23,10 @@ pub(crate) fn settle(
         (Some(_), SharpChoice::On) => SharpFinding::Requested,
         _ => SharpFinding::NoExactFit,
     };
-    let evidence = optima
-        .evidence
-        .filter(|_| finding != SharpFinding::NoExactFit);
+    let begins = optima.evidence.and_then(|evidence| match choice {
+        SharpChoice::On => Some(evidence.at_margin(REQUESTED)),
+        _ => evidence.stands_out().then(|| evidence.at_margin(MARGIN)),
+    });
     candidates
         .par_iter_mut()
         .zip(&optima.of_candidates)
@@ -33,36 +35,50 @@ pub(crate) fn settle(
                 return;
             };
             let energy = optimum.energy.total();
-            let score = evidence.map(|evidence| evidence.score(energy));
             candidate.sharp = Some(SharpPose {
                 energy,
                 clashes: optimum.energy.clashes,
-                score,
+                score: begins.map(|_| 0.0),
             });
-            if let Some(score) = score.filter(|score| *score > 0.0) {
-                candidate.pose = optimum.pose;
-                candidate.start = optimum.pose;
-                candidate.refined = false;
-                rescore(candidate, score, (scorer, rescorer), workspace);
+            let reward = begins.map_or(0.0, |begins| SCORE_PER_RT * (begins - energy));
+            if reward > 0.0 {
+                let settled = settled(candidate, optimum, reward, (scorer, rescorer), workspace);
+                // The better of the two, so that the score grows without a step.
+                if settled.score > candidate.score {
+                    *candidate = settled;
+                }
             }
         });
-    if evidence.is_some() {
+    if begins.is_some() {
         candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
     }
     finding
 }
 
-/// Scores a candidate at its pose by the exact sum, the pose terms and the score of its sharp fit.
-fn rescore(
-    candidate: &mut Candidate,
-    sharp: f64,
+/// A candidate moved into its optimum, scored there by the exact sum, the pose terms and the reward of its sharp fit.
+fn settled(
+    candidate: &Candidate,
+    optimum: &Optimum,
+    reward: f64,
     (scorer, rescorer): (&ExactSum, Option<&Rescorer>),
     workspace: &mut Workspace,
-) {
-    let terms = scorer.terms(&candidate.pose);
-    candidate.pose_terms = rescorer
-        .map(|rescorer| rescorer.score(&candidate.pose, workspace))
+) -> Candidate {
+    let terms = scorer.terms(&optimum.pose);
+    let pose_terms = rescorer
+        .map(|rescorer| rescorer.score(&optimum.pose, workspace))
         .unwrap_or_default();
-    candidate.score = terms.score + candidate.pose_terms.sum() + sharp;
-    candidate.terms = Some(terms);
+    Candidate {
+        pose: optimum.pose,
+        start: optimum.pose,
+        refined: false,
+        score: terms.score + pose_terms.sum() + reward,
+        pose_terms,
+        terms: Some(terms),
+        sharp: Some(SharpPose {
+            energy: optimum.energy.total(),
+            clashes: optimum.energy.clashes,
+            score: Some(reward),
+        }),
+        ..*candidate
+    }
 }

@@ -9,8 +9,10 @@
 //! with the mean probability p of the side. So a residue that is no likelier than the mean counts nothing, and neither
 //! large nor small interfaces are preferred.
 //!
-//! On training pairs a nat of independent evidence is worth 276 of score (scripts/potentials/score_odds.py). Neighbours
-//! share the errors of a predictor, and predictions are not calibrated: the default weight is about a fifth of that.
+//! On training pairs a nat of independent evidence is worth 276 of score (scripts/potentials/score_odds.py). The errors
+//! of predictors are not independent: they come in patches as large as an interface, and the hydrophobic patches that a
+//! predictor sees are those that the contact potentials see. So the default weight is one that does no harm with a real
+//! predictor (docs/guides/known_residues.md, "Predictions").
 
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
@@ -27,7 +29,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         option: "interface-weight",
         help: "Score of a residue in contact for each nat by which its log-odds to be in the interface exceed those of the mean",
         unit: "score per nat",
-        default: 60.0,
+        default: 5.0,
     },
     time_share: UNRELAXED,
     is_shown_always: false,
