@@ -7,6 +7,8 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
+use crate::dock::memory::size::in_words;
+
 /// Most bytes of a file of options and of a cost model: both are written by hand or hold a few numbers.
 pub const MAX_OPTIONS: u64 = 1 << 20;
 
@@ -85,7 +87,10 @@ fn bounded(source: impl Read, limit: u64) -> io::Result<Vec<u8>> {
 fn too_large(limit: u64) -> io::Error {
     io::Error::new(
         ErrorKind::FileTooLarge,
-        format!("it has more than {limit} bytes, the most that are read of it"),
+        format!(
+            "it has more than {}, the most that are read of it",
+            in_words(limit)
+        ),
     )
 }
 
@@ -106,7 +111,7 @@ mod tests {
         }
         let error = bounded(Counted(&read), 1000).unwrap_err();
         assert_eq!(error.kind(), ErrorKind::FileTooLarge);
-        assert!(error.to_string().contains("more than 1000 bytes"));
+        assert!(error.to_string().contains("more than 1 kB"));
         assert_eq!(read.get(), 1001);
         assert_eq!(bounded(&[7; 1000][..], 1000).unwrap(), [7; 1000]);
         assert!(bounded(&[7; 1001][..], 1000).is_err());

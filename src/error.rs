@@ -1,6 +1,6 @@
 //! Why a search was refused or failed, and what to do about it.
 
-use crate::dock::memory::size::as_size;
+use crate::dock::memory::size::{as_size, in_words};
 use crate::predictions::PredictionError;
 use crate::progress::Ended;
 use crate::restraints::{Needed, RestraintFileError};
@@ -46,7 +46,7 @@ pub enum SearchError {
         reason: String,
     },
     /// Even with one rotation in flight the run does not fit into the memory allowed.
-    #[error("the run needs {needed} bytes of memory, and {allowed} are allowed")]
+    #[error("the run needs {} of memory, and {} are allowed", in_words(*.needed), in_words(*.allowed))]
     Memory {
         /// Bytes that suffice.
         needed: u64,
@@ -62,7 +62,7 @@ pub enum SearchError {
         shows_little: bool,
     },
     /// The modes that a score is to be made of do not fit into the memory allowed.
-    #[error("{modes} modes need {needed} bytes, and {allowed} are allowed")]
+    #[error("{modes} modes need {} of memory, and {} are allowed", in_words(*.needed), in_words(*.allowed))]
     Modes {
         /// Modes, conjugates counted once.
         modes: usize,

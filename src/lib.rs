@@ -41,6 +41,7 @@ pub mod mesh;
 pub mod named_columns;
 pub mod options;
 pub mod output;
+pub mod plain_path;
 pub mod plot;
 pub mod pose_geometry;
 pub mod pose_space;
@@ -55,6 +56,7 @@ pub mod score;
 pub mod search;
 mod shell_word;
 pub mod side_chains;
+pub mod signals;
 pub mod system_limits;
 #[cfg(test)]
 mod test_molecules;

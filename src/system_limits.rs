@@ -31,6 +31,11 @@ pub fn report_as_json() {
     JSON.store(true, Ordering::Relaxed);
 }
 
+/// Whether failures are reported as JSON objects, too.
+pub(crate) fn wants_json() -> bool {
+    JSON.load(Ordering::Relaxed)
+}
+
 /// Has writing past the limit on file sizes fail, not end the process.
 pub fn fail_at_file_size() {
     #[cfg(unix)]
@@ -88,7 +93,7 @@ fn out_of_memory(bytes: usize) -> ! {
         }
     }
     let mut text = [0u8; 1024];
-    if JSON.load(Ordering::Relaxed) {
+    if wants_json() {
         let object = filled(&mut text, |text| {
             writeln!(
                 text,
@@ -119,7 +124,7 @@ fn filled(buffer: &mut [u8], write: impl FnOnce(&mut &mut [u8]) -> std::io::Resu
 
 /// Writes to a file descriptor of the process.
 #[cfg(unix)]
-fn write_past_buffers(descriptor: i32, mut text: &[u8]) {
+pub(crate) fn write_past_buffers(descriptor: i32, mut text: &[u8]) {
     while !text.is_empty() {
         // SAFETY: the text is readable over its whole length.
         let written = unsafe { libc::write(descriptor, text.as_ptr().cast(), text.len()) };

@@ -468,3 +468,46 @@ fn words_of_other_programs_are_answered_by_what_does_that_here() {
     let said = String::from_utf8_lossy(&ended.get_output().stderr).into_owned();
     assert!(said.contains("'--rotations'"), "{said}");
 }
+
+/// Units and remedies that a new user missed: `1deg` was "a whole number between ...", 5 was seconds without a word,
+/// one file alone was refused without a word on rings, and memory was counted in bytes.
+#[test]
+fn messages_name_units_and_remedies() {
+    let place = Place::new();
+    let pair = ["dock", "receptor.pdb", "ligand.pdb"];
+    let with = |more: &[&str]| place.refused(&[&pair[..], more].concat());
+    says(
+        &with(&["--rotations", "1deg"]),
+        "an angle of at least 1.07 degrees",
+    );
+    says(&with(&["--budget", "5"]), "write 5s, 5min or 5h");
+    let memory = with(&["--memory", "10M"]);
+    says(&memory, "MB of memory, and 10 MB are allowed");
+    let config = with(&["--config", "missing.toml"]);
+    says(&config, "the file of options cannot be read");
+    assert_eq!(config["file"], "missing.toml");
+    let alone = place.refused(&["dock", "receptor.pdb"]);
+    let remedy = alone["remedy"].as_str().unwrap();
+    assert!(remedy.contains("--symmetry C2"), "{remedy}");
+}
+
+/// CA atoms alone were ranked by an all-atom score, and the run ended well.
+#[test]
+fn a_trace_of_a_protein() {
+    let place = Place::new();
+    let trace: String = molecules::receptor()
+        .lines()
+        .filter(|line| line.get(12..16) == Some(" CA "))
+        .map(|line| format!("{line}\n"))
+        .collect();
+    place.write("trace.pdb", &trace);
+    says(
+        &place.dock("trace.pdb"),
+        "the receptor is no all-atom model",
+    );
+    let pose = "--pose=1,0,0,0,0,0,0";
+    says(
+        &place.refused(&["score", "ligand.pdb", "trace.pdb", pose]),
+        "the ligand is no all-atom model",
+    );
+}

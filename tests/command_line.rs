@@ -184,7 +184,7 @@ fn a_run_says_little_unless_asked() {
         "{table}"
     );
     for part in [
-        "Error: scores of the search",
+        "Accuracy: scores of the search",
         "shape",
         "open brief/report.html",
         "knotdock export brief --rank 11-",

@@ -70,6 +70,7 @@ fn check(folder: &Path, object: &Value) {
     let competitors = |own_score: bool| {
         settings.iter().filter(move |setting| {
             setting["parameter"] != "reference"
+                && setting["parameter"] != "repeat"
                 && (!own_score
                     || ["resolution", "sample_grid"]
                         .iter()
@@ -203,7 +204,7 @@ fn molecules() {
     assert!(
         parameters
             .skip(2)
-            .all(|setting| setting["parameter"] == "rotations")
+            .all(|setting| setting["parameter"] == "rotations" || setting["parameter"] == "repeat")
     );
 }
 

@@ -29,6 +29,8 @@ enum Event {
     Warned(String),
     Failed(String),
     Stage(String, u64),
+    /// Steps of the stage before it in the list.
+    Advanced(u64),
     Result(String),
 }
 
@@ -36,8 +38,6 @@ enum Event {
 #[derive(Default)]
 struct Events {
     said: Mutex<Vec<Event>>,
-    /// Steps of the stage that were done and are not heard of yet.
-    steps: std::sync::atomic::AtomicU64,
     is_stopped: AtomicBool,
 }
 
@@ -84,7 +84,12 @@ impl Listener for Events {
     }
 
     fn advance(&self, by: u64) {
-        self.steps.fetch_add(by, Ordering::Relaxed);
+        if let Ok(mut said) = self.said.lock() {
+            match said.last_mut() {
+                Some(Event::Advanced(steps)) => *steps += by,
+                _ => said.push(Event::Advanced(by)),
+            }
+        }
     }
 
     fn go_on(&self) -> Result<(), Ended> {
@@ -157,13 +162,11 @@ fn tell(listener: &Bound<'_, PyAny>, events: &Events, result: &mut Option<String
             Event::Warned(text) => drop(listener.call_method1("warn", (text,))?),
             Event::Failed(text) => drop(listener.call_method1("error", (text,))?),
             Event::Stage(name, total) => drop(listener.call_method1("stage", (name, total))?),
+            Event::Advanced(steps) => drop(listener.call_method1("advance", (steps,))?),
             Event::Result(object) => *result = Some(object),
         }
     }
-    match events.steps.swap(0, Ordering::Relaxed) {
-        0 => Ok(()),
-        steps => listener.call_method1("advance", (steps,)).map(drop),
-    }
+    Ok(())
 }
 
 /// Runs the program on a command line, of which the first word is its name; its exit code.

@@ -166,3 +166,26 @@ def test_help_shows_every_option():
     parameters = inspect.signature(knotdock.dock).parameters
     assert parameters["rotations"].kind is inspect.Parameter.KEYWORD_ONLY
     assert {"receptor", "ligand", "output", "progress"} <= set(parameters)
+
+
+def test_each_stage_advances_by_its_own_steps(helices, options, monkeypatch):
+    """A notebook once showed 2 steps of 1, which were those of two stages, and 0 of 0."""
+    stages = []
+
+    class Bar:
+        def __init__(self, shown):
+            pass
+
+        def stage(self, name, total):
+            stages.append([name, total, 0])
+
+        def advance(self, steps):
+            stages[-1][2] += steps
+
+        def close(self):
+            pass
+
+    monkeypatch.setattr("knotdock.commands.ProgressBar", Bar)
+    knotdock.dock(*helices, **options)
+    assert [name for name, _, _ in stages][:2] == ["prepare", "search"]
+    assert all(total > 0 and steps == total for _, total, steps in stages), stages

@@ -131,11 +131,11 @@ impl<T: Real> Correlator<T> {
         let plan = Arc::new(plan);
         let spectra = ReceptorSpectra::new(&plan, receptor, ligand, Quantity::Score);
         let probes = rotation_set(PROBE_SET);
-        let chosen = choose_rank(&plan, &spectra, ligand, &probes);
         let ChosenRank {
             engine,
             error: rank_error,
-        } = chosen;
+            ..
+        } = choose_rank(&plan, &spectra, ligand, &probes);
         let exact = ExactScorer::with_effects(plan.kernel(), receptor, ligand, plan.effects())
             .map_err(PlanError::from)?;
         // Other terms and weights below zero reward as well.

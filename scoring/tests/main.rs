@@ -1,7 +1,6 @@
 //! The tests of the crate, one module a subject, in one program: each further one would link all crates again.
 //! `cargo test -p knotdock-scoring --test all SUBJECT` runs a subject.
 
-
 mod scene;
 
 mod cancellation;

@@ -205,7 +205,9 @@ impl Dock {
             None => self.ligand.as_ref(),
         };
         let (Some(receptor), Some(ligand)) = (&self.receptor, ligand) else {
-            return Err(Failure::input("a receptor and a ligand are needed"));
+            return Err(Failure::input("a receptor and a ligand are needed").remedy(
+                "give both files, or one with --symmetry C2 (C3, D2 ...) for a ring of its copies",
+            ));
         };
         Request::read([receptor, ligand], self.native.read()?, given)
     }

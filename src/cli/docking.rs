@@ -86,7 +86,12 @@ impl Docking {
         console.say(score_text(plan, sides));
         let model = model.unwrap_or_else(|| cost_model(console).0);
         let seconds = seconds_of(plan, &model);
-        console.say(expected_text(plan, seconds, chosen.as_ref()));
+        console.say(expected_text(
+            plan,
+            seconds,
+            chosen.as_ref(),
+            request.is_angle,
+        ));
         Ok(Self {
             request,
             directory,

@@ -38,6 +38,8 @@ use std::sync::LazyLock;
 
 use crate::options::text::first_paragraph;
 use crate::output::records::program::{FEATURES, VERSION_WITH_COMMIT};
+use crate::search::scan_engine::name_runtime_folder;
+use crate::signals::report_end;
 use crate::threads;
 pub use arguments::memory::default_limit as memory_limit;
 use arguments::program::{ProgramArguments, with_negative_numbers};
@@ -110,6 +112,8 @@ fn long_version() -> &'static str {
 
 /// Runs the program on arguments, of which the first is the name it was called by; its exit code.
 pub fn main(arguments: Vec<OsString>) -> u8 {
+    report_end();
+    name_runtime_folder();
     let json = wants_json(&arguments);
     if json {
         report_as_json();

@@ -6,9 +6,10 @@ use std::time::Instant;
 use crate::options::Threads;
 use crate::options::values::not_negative;
 use crate::output::files::complexes::file_names;
-use crate::output::files::exported::ExportFolder;
+use crate::output::files::exported::{ExportError, ExportFolder};
 use crate::output::files::whole_file::write_whole;
 use crate::output::records::recorded_run::RecordedRun;
+use crate::output::tables::poses::{PoseRow, PoseTable};
 use crate::output::tables::refined;
 use crate::output::tables::report::counted;
 use crate::pose_space::arrangement::Arrangement;
@@ -84,6 +85,7 @@ impl Refine {
             (None, None) => None,
         };
         let folder = self.folder()?;
+        self.refuse_other_ranks(&folder, &rows)?;
         let natives = native.iter().flat_map(NativeFiles::inputs);
         let read: Vec<&Path> = [receptor, ligand]
             .into_iter()
@@ -108,9 +110,24 @@ impl Refine {
         write_whole(&export.staged().join(TABLE), |file| {
             refined::write_to(file, &written.table)
         })?;
-        export.place(self.force)?;
+        export.place(self.force).map_err(|error| match error {
+            ExportError::Changed(path) => held(&path, "otherwise, or edited since"),
+            error => error.into(),
+        })?;
         let seconds = start.elapsed().as_secs_f64();
         report(&written, known.as_ref(), &folder, seconds, console)
+    }
+
+    /// Refuses a directory with poses of other ranks, before anything is refined: its table would not have them.
+    fn refuse_other_ranks(&self, folder: &Path, rows: &[PoseRow]) -> Result<(), Failure> {
+        let Ok(table) = PoseTable::read(&folder.join(TABLE)) else {
+            return Ok(());
+        };
+        let ranks = |rows: &[PoseRow]| rows.iter().map(|row| row.rank).collect::<Vec<_>>();
+        if self.force || ranks(table.rows()) == ranks(rows) {
+            return Ok(());
+        }
+        Err(held(folder, "of other ranks"))
     }
 
     /// The directory to write to: not the run's own, whose complexes are those of its ranking.
@@ -127,6 +144,13 @@ impl Refine {
         }
         Ok(folder)
     }
+}
+
+/// The refusal of a directory with refined poses that differ from those to write, as `at` shows: `how` says in what.
+fn held(at: &Path, how: &str) -> Failure {
+    Failure::input(format!("the directory holds poses refined {how}"))
+        .at(at)
+        .remedy("choose another directory with -o, or pass --force to replace them")
 }
 
 /// Refuses the run of a ring, whose copies would each need a move and side chains of their own.

@@ -20,6 +20,7 @@ use crate::cli::inputs::molecules::Input;
 use crate::cli::inputs::poses::pose;
 use crate::cli::inputs::request::lengths;
 use crate::cli::inputs::shapes::is_shape;
+use crate::cli::inputs::traces::refuse_traces;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{known_text, regions_text, site_text};
 use crate::cli::messages::failure::Failure;
@@ -124,6 +125,7 @@ impl Score {
         let options = self.ladder(dock);
         let reading = dock.input.reading();
         let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
+        refuse_traces(["receptor", "ligand"].into_iter().zip(&inputs))?;
         let [receptor, ligand] = inputs.map(|input| input.molecule);
         console.say(format!("Receptor: {}", receptor.report));
         console.say(format!("Ligand: {}", ligand.report));

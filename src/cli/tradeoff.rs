@@ -253,7 +253,7 @@ impl SweepProgress for SweepConsole<'_> {
         self.line.clear();
         let text = match setting.parameter {
             Parameter::Default => setting.name.clone(),
-            Parameter::Reference | Parameter::Combination => {
+            Parameter::Reference | Parameter::Repeat | Parameter::Combination => {
                 format!("{}: {}", setting.name, setting.arguments)
             }
             _ => setting.arguments.clone(),

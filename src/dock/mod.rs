@@ -1,7 +1,7 @@
 //! A docking run: from the scene and the options to ranked poses.
 
+mod effect_costs;
 pub mod effect_decisions;
-mod effect_timings;
 pub mod flexible_regions;
 pub mod memory;
 pub mod outcome;

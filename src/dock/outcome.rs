@@ -127,10 +127,10 @@ pub struct EffectCost {
     pub on: bool,
     /// Why it was on or off.
     pub reason: String,
-    /// Fields of the compressed functions that it adds: of shape what it needs alone, of another what leaving it out
-    /// would save.
-    pub rank: usize,
-    /// Milliseconds that it adds to a rotation on one thread, likewise, peaks not counted.
+    /// Its part of the compressed functions; the parts of all effects add up to the run's rank.
+    pub functions: f64,
+    /// Its part of the milliseconds of a rotation, by its functions: of processor time, or on the clock where a graphics
+    /// processor searched.
     #[serde(skip)]
     pub milliseconds_per_rotation: f64,
 }

@@ -1,7 +1,7 @@
 //! The run: prepare, scan the rotations, refine the best peaks, check the fast path, rescore, cluster, score exactly.
 
-use crate::dock::effect_timings::{effect_timings, rank_of};
-use crate::dock::outcome::{DockOutcome, EffectCost, MeasuredError, SharpOutcome, error_scale};
+use crate::dock::effect_costs::{components_by_effect, effect_costs, rank_of};
+use crate::dock::outcome::{DockOutcome, MeasuredError, SharpOutcome, error_scale};
 use crate::dock::plan::DockPlan;
 use crate::dock::stopwatch::Stopwatch;
 use crate::error::SearchError;
@@ -91,7 +91,7 @@ fn dock_in<T: Real>(
         engine,
         scorer,
         rank_error,
-        effects,
+        components,
     } = Prepared::<T>::new(plan, progress)?;
     clock.lap("prepare");
     let mut found = find(plan, &engine, deadline, (progress, &mut clock))?;
@@ -159,6 +159,8 @@ fn dock_in<T: Real>(
     );
     let error = check.error(plan, &found.peaks, &ranking);
     clock.lap("score");
+    let timing = clock.into_stages();
+    let searched = (found.searched, adapter.is_some());
 
     Ok(DockOutcome {
         poses: ranking.poses,
@@ -169,10 +171,10 @@ fn dock_in<T: Real>(
         error,
         rank_error,
         rank,
-        effects,
+        effects: effect_costs(plan, &components, searched, &timing),
         sharp,
         fine: found.fine,
-        timing: clock.into_stages(),
+        timing,
         adapter,
     })
 }
@@ -185,11 +187,12 @@ struct Prepared<T: Real> {
     scorer: ExactSum,
     /// Error of the compressed components at the probe rotations, relative to their best score.
     rank_error: f64,
-    effects: Vec<EffectCost>,
+    /// Components of the engine by effect.
+    components: [f64; Effect::ALL.len()],
 }
 
 impl<T: Real> Prepared<T> {
-    /// Transforms the receptor, chooses the rank and times the effects.
+    /// Transforms the receptor and chooses the rank.
     fn new(plan: &DockPlan, progress: &dyn Progress) -> Result<Self, SearchError> {
         progress.stage("prepare", 1);
         let engine = &plan.search.engine;
@@ -197,8 +200,9 @@ impl<T: Real> Prepared<T> {
         let ChosenRank {
             engine,
             error: rank_error,
+            shares,
         } = rank_of(plan, &spectra);
-        let effects = effect_timings(plan, &spectra, &engine);
+        let components = components_by_effect(&spectra, &shares);
         let in_flight = plan.memory.in_flight_at(engine.rank());
         let prepared = Self {
             engine: ScanEngine {
@@ -208,7 +212,7 @@ impl<T: Real> Prepared<T> {
             spectra: (plan.refined() > 0).then_some(spectra),
             scorer: plan.exact_scorer()?,
             rank_error,
-            effects,
+            components,
         };
         progress.advance(1);
         Ok(prepared)

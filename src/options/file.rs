@@ -22,6 +22,7 @@ use toml::de::{DeString, DeTable, DeValue};
 use super::definition::{Definition, definitions_of};
 use super::text;
 use crate::bounded_read::{MAX_OPTIONS, read_bounded_text};
+use crate::plain_path::plain_path;
 
 /// An option that a file gives a value.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -56,8 +57,10 @@ pub fn read<T: Args>(path: &Path) -> Result<Vec<Entry>, ConfigError> {
     let text = read_bounded_text(path, MAX_OPTIONS).map_err(|error| ConfigError {
         path: path.to_owned(),
         line: None,
-        message: error.to_string(),
-        remedy: "check the file".to_owned(),
+        message: format!("the file of options cannot be read: {error}"),
+        remedy: "check its name; `knotdock preset default > FILE` writes one to change, and one option may stand for a \
+                 file, as in --config search.rotations=600"
+            .to_owned(),
         refused: None,
     })?;
     read_text::<T>(&text, path)
@@ -220,7 +223,8 @@ fn words(option: &Definition, value: &DeValue<'_>, folder: &Path) -> Result<Vec<
     }
     let text = |value: &DeValue<'_>| match value {
         DeValue::String(text) if option.names_file() => {
-            Ok(folder.join(text.as_ref()).to_string_lossy().into_owned())
+            let path = plain_path(&folder.join(text.as_ref()));
+            Ok(path.to_string_lossy().into_owned())
         }
         DeValue::String(text) => Ok(text.to_string()),
         DeValue::Integer(number) => {

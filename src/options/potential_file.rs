@@ -51,7 +51,11 @@ fn read<P>(
         message,
         remedy: format!("give a table as scripts/{script} writes it, or leave the option out"),
     };
-    let text = read_bounded_text(Path::new(path), MAX_TABLE)
-        .map_err(|error| wrong(None, error.to_string()))?;
+    let text = read_bounded_text(Path::new(path), MAX_TABLE).map_err(|error| {
+        wrong(
+            None,
+            format!("the table of energies cannot be read: {error}"),
+        )
+    })?;
     parse(&text).map_err(|error| wrong(Some(error.line as u64), error.to_string()))
 }

@@ -15,26 +15,38 @@ pub fn rotations(
     range: RangeInclusive<usize>,
 ) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
     move |text| match text.strip_suffix("deg") {
-        Some(angle) => {
-            let rotations = rotations_of_angle(angle)?;
-            count(range.clone())(&rotations.to_string())
-        }
+        Some(angle) => match rotations_of_text(angle)? {
+            rotations if range.contains(&rotations) => Ok(rotations),
+            rotations => Err(format!(
+                "it must be an angle of at least {:.2} degrees, for {angle} degrees stand for {rotations} rotations and at \
+                 most {} are searched",
+                angle_of_rotations(*range.end()),
+                range.end()
+            )),
+        },
         None => count(range.clone())(text)
             .map_err(|error| format!("{error}, or an angle such as 15deg")),
     }
 }
 
-/// The number of rotations that the field takes for an angle in degrees: N = round(3600 (15/D)^3).
-///
-/// # Errors
-/// When the angle is not above 0.1 (12 thousand million rotations) and at most 180 degrees.
-fn rotations_of_angle(text: &str) -> Result<usize, String> {
-    let angle = above_zero(text)?;
-    if !(0.1..=180.0).contains(&angle) {
-        return Err("the angle must lie between 0.1 and 180 degrees".to_owned());
-    }
+/// As [`rotations_of_angle`], of an angle as it is typed.
+fn rotations_of_text(text: &str) -> Result<usize, String> {
+    rotations_of_angle(above_zero(text)?)
+        .ok_or_else(|| "the angle must lie between 0.1 and 180 degrees".to_owned())
+}
+
+/// The number of rotations that the field takes for an angle in degrees: N = round(3600 (15/D)^3). `None` unless the
+/// angle is at least 0.1 (12 thousand million rotations) and at most 180.
+pub fn rotations_of_angle(angle: f64) -> Option<usize> {
     let rotations = (ROTATIONS_AT_15_DEGREES * (15.0 / angle).powi(3)).round();
-    Ok((rotations as usize).max(1))
+    let is_angle = (0.1..=180.0).contains(&angle);
+    is_angle.then_some((rotations as usize).max(1))
+}
+
+/// The angle in degrees that stands for a number of rotations, rounded up to hundredths.
+pub fn angle_of_rotations(rotations: usize) -> f64 {
+    let angle = 15.0 * (ROTATIONS_AT_15_DEGREES / rotations.max(1) as f64).cbrt();
+    (100.0 * angle).ceil() / 100.0
 }
 
 /// Numbers in a range.
@@ -82,7 +94,10 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A time in seconds, from text such as `5s`, `90`, `2min` or `1h`.
+/// A time in seconds, from text such as `5s`, `2min` or `1h`: a bare number may be meant in any unit.
+///
+/// # Errors
+/// What is wrong with the text.
 pub fn duration(text: &str) -> Result<f64, String> {
     let text = text.trim();
     let end = text
@@ -90,7 +105,13 @@ pub fn duration(text: &str) -> Result<f64, String> {
         .unwrap_or(text.len());
     let (number, unit) = text.split_at(end);
     let unit = match unit.trim() {
-        "" | "s" => 1.0,
+        "s" => 1.0,
+        "" if !number.trim().is_empty() => {
+            let number = number.trim();
+            return Err(format!(
+                "`{number}` has no unit of time; write {number}s, {number}min or {number}h"
+            ));
+        }
         "us" | "µs" => 1e-6,
         "ms" => 1e-3,
         "min" => 60.0,
@@ -237,16 +258,24 @@ mod tests {
     #[test]
     fn angles_give_the_counts_of_the_field() {
         let rotations = rotations(1..=10_000_000);
+        // An angle out of range was answered with "a whole number between 1 and 10000000".
+        let least = rotations("1deg").unwrap_err();
+        assert!(
+            least.contains("an angle of at least 1.07 degrees"),
+            "{least}"
+        );
+        assert!(rotations("1.07deg").is_ok());
+        assert_eq!(angle_of_rotations(3600), 15.0);
         assert_eq!(rotations("17"), Ok(17));
         assert_eq!(rotations("15deg"), Ok(3600));
         for text in ["0", "0deg", "15 rad", "deg", "10000001", "-3", "1.5"] {
             assert!(rotations(text).is_err(), "{text}");
         }
-        assert_eq!(rotations_of_angle("15"), Ok(3600));
-        assert_eq!(rotations_of_angle("6"), Ok(56_250));
-        assert_eq!(rotations_of_angle("180"), Ok(2));
+        assert_eq!(rotations_of_text("15"), Ok(3600));
+        assert_eq!(rotations_of_text("6"), Ok(56_250));
+        assert_eq!(rotations_of_text("180"), Ok(2));
         for text in ["0", "-15", "nan", "inf", "0.01", "200", "x"] {
-            assert!(rotations_of_angle(text).is_err(), "{text}");
+            assert!(rotations_of_text(text).is_err(), "{text}");
         }
     }
 
@@ -254,14 +283,15 @@ mod tests {
     fn times_have_units() {
         for (text, seconds) in [
             ("5s", 5.0),
-            ("90", 90.0),
             ("1.5 min", 90.0),
             ("2h", 7200.0),
             ("1e2s", 100.0),
         ] {
             assert_eq!(duration(text), Ok(seconds), "{text}");
         }
-        for text in ["", "s", "0s", "-5s", "5 parsecs", "inf", "nan"] {
+        // A bare number is minutes to some programs and seconds to others.
+        assert!(duration("5").unwrap_err().contains("write 5s, 5min or 5h"));
+        for text in ["", "90", "1e2", "s", "0s", "-5s", "5 parsecs", "inf", "nan"] {
             assert!(duration(text).is_err(), "{text}");
         }
     }

@@ -1,5 +1,8 @@
 //! Logarithmic axes: their range, where numbers stand, and how these read.
 
+/// Share of an axis that a dot takes to either side, and a little more.
+const DOT: f64 = 0.03;
+
 /// A logarithmic axis: from and to, in powers of ten.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Scale {
@@ -8,8 +11,9 @@ pub(super) struct Scale {
 }
 
 impl Scale {
-    /// An axis that holds all values with some room, at least from one to five.
-    pub fn over(values: impl Iterator<Item = f64>) -> Self {
+    /// An axis that holds all values with some room, at least from one to five; up to `most` where values have a most,
+    /// with room for the dot of one that is it.
+    pub fn over(values: impl Iterator<Item = f64>, most: Option<f64>) -> Self {
         let (low, high) = values
             .map(f64::log10)
             .fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), value| {
@@ -22,10 +26,17 @@ impl Scale {
             };
         }
         let room = (0.08 * (high - low)).max(0.5 * (0.7 - (high - low)).max(0.1));
-        Self {
-            low: low - room,
-            high: high + room,
+        let (low, mut highest) = (low - room, high + room);
+        if let Some(most) = most.map(f64::log10) {
+            let dot = DOT * (most - low);
+            let end = if high > most - dot {
+                high.max(most) + dot
+            } else {
+                most
+            };
+            highest = highest.min(end);
         }
+        Self { low, high: highest }
     }
 
     /// From and to, as powers of ten.
@@ -73,21 +84,34 @@ pub(super) fn tick_text(value: f64) -> String {
 mod tests {
     use super::*;
 
+    /// The axis of a share once ran on to 170%.
+    #[test]
+    fn an_axis_ends_at_the_most_that_there_can_be() {
+        let of = |values: [f64; 2]| Scale::over(values.into_iter(), Some(100.0));
+        assert_eq!(of([60.0, 90.0]).high, 2.0);
+        assert!(of([1.0, 3.0]).high < 1.0);
+        // A dot at the end has room, and half its width at the most.
+        let full = of([60.0, 100.0]);
+        assert!(full.high > 2.0 && full.high < 2.0 + 0.05 * (full.high - full.low));
+        let past = of([60.0, 120.0]);
+        assert!(past.high > 120f64.log10());
+    }
+
     #[test]
     fn ticks_lie_within_the_axis_and_read_as_people_write() {
-        let narrow = Scale::over([3.0, 40.0].into_iter());
+        let narrow = Scale::over([3.0, 40.0].into_iter(), None);
         assert_eq!(narrow.ticks(), [5.0, 10.0, 20.0]);
-        let wide = Scale::over([1e-6, 1e-1].into_iter());
+        let wide = Scale::over([1e-6, 1e-1].into_iter(), None);
         assert!(wide.ticks().len() >= 5);
         for scale in [
             narrow,
             wide,
-            Scale::over([7.0].into_iter()),
-            Scale::over(std::iter::empty()),
+            Scale::over([7.0].into_iter(), None),
+            Scale::over(std::iter::empty(), None),
         ] {
             assert!(scale.low < scale.high && !scale.ticks().is_empty());
         }
-        let powers = Scale::over([64.0, 2097152.0].into_iter()).powers_of_two();
+        let powers = Scale::over([64.0, 2097152.0].into_iter(), None).powers_of_two();
         assert!(powers.contains(&6) && powers.contains(&21) && powers.len() <= 9);
         let texts = [0.5, 10.0, 1e-6, 0.05].map(tick_text);
         assert_eq!(texts, ["0.5", "10", "1e-6", "0.05"]);

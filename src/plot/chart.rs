@@ -49,6 +49,8 @@ pub struct Axis {
     pub ticks: Ticks,
     /// A value at the lower end whose tick is a word.
     pub named: Option<(f64, &'static str)>,
+    /// The largest value that there can be, such as 100 of a percentage.
+    pub most: Option<f64>,
 }
 
 /// Style of a curve's points.
@@ -224,6 +226,7 @@ impl Axis {
             label: label.into(),
             ticks: Ticks::Ten,
             named: None,
+            most: None,
         }
     }
 
@@ -311,6 +314,7 @@ impl Panel {
                 .filter(|series| series.style != Style::Guide)
                 .flat_map(|series| series.shown())
                 .map(|(_, point)| point[axis]),
+            [&self.across, &self.up][axis].most,
         )
     }
 
@@ -358,10 +362,17 @@ impl Panel {
         };
         let mut named = Vec::new();
         let mut others = Vec::new();
+        let mut lines = Vec::new();
         for series in &self.series {
+            if !matches!(series.style, Style::Discs | Style::HollowDiscs) {
+                let ends: Vec<[f64; 2]> = series.shown().map(|(_, at)| pixel(at)).collect();
+                lines.extend(ends.windows(2).map(|ends| [ends[0], ends[1]]));
+            }
             for (index, point) in series.shown() {
                 match series.labels.get(index) {
                     Some(label) => named.push((pixel(point), label.as_str(), series.rgb())),
+                    // A line has no mark at its points.
+                    None if series.disc(()).is_empty() => {}
                     None => others.push(pixel(point)),
                 }
             }
@@ -372,7 +383,8 @@ impl Panel {
             named.iter().map(|(at, label, _)| (*at, *label)).collect();
         // Pixels are those of the whole picture, as a backend takes them.
         let corner = area.get_pixel_range();
-        for ((_, label, colour), free) in named.iter().zip(place(&points, &others, frame)) {
+        for ((_, label, colour), free) in named.iter().zip(place(&points, (&others, &lines), frame))
+        {
             if let Some(([x, y], anchor)) = free {
                 let at = (x as i32 - corner.0.start, y as i32 - corner.1.start);
                 area.draw(&Text::new(*label, at, text(*colour, anchor)))?;

@@ -1,4 +1,4 @@
-//! Places of labels beside points, so that they cover neither points nor each other.
+//! Places of labels beside points, so that they cover neither points nor lines nor each other.
 
 /// Width in pixels that a character takes at the size of labels.
 pub(super) const CHARACTER: f64 = 8.0;
@@ -8,6 +8,9 @@ pub(super) const LINE: f64 = 16.0;
 const DISTANCE: f64 = 9.0;
 /// Half edge in pixels of the square that a point takes.
 const POINT: f64 = 6.0;
+
+/// Half edge in pixels of the squares that a line takes.
+const LINE_HALF: f64 = 2.0;
 
 /// Which part of a text lies at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -27,17 +30,26 @@ pub(super) fn text_width(text: &str) -> f64 {
 
 /// A place for each label beside its point, in order; `None` where there is no room for it.
 ///
-/// `points` are those of the labels and `others` further ones, in pixels; labels stay within the `frame` (left,
-/// upper, right, lower).
+/// `points` are those of the labels, `others` further ones and `lines` straight ones from end to end, in pixels; labels
+/// stay within the `frame` (left, upper, right, lower).
 pub(super) fn place(
     points: &[([f64; 2], &str)],
-    others: &[[f64; 2]],
+    (others, lines): (&[[f64; 2]], &[[[f64; 2]; 2]]),
     frame: [f64; 4],
 ) -> Vec<Option<([f64; 2], Anchor)>> {
+    let square = |[x, y]: [f64; 2], half: f64| [x - half, y - half, x + half, y + half];
     let all = points.iter().map(|(at, _)| at).chain(others);
-    let mut taken: Vec<[f64; 4]> = all
-        .map(|[x, y]| [x - POINT, y - POINT, x + POINT, y + POINT])
-        .collect();
+    let mut taken: Vec<[f64; 4]> = all.map(|&at| square(at, POINT)).collect();
+    for [from, to] in lines {
+        let along = [to[0] - from[0], to[1] - from[1]];
+        // Squares that overlap, from end to end.
+        let steps = (along[0].hypot(along[1]) / LINE_HALF).ceil().max(1.0);
+        taken.extend((0..=steps as usize).map(|step| {
+            let part = step as f64 / steps;
+            let at = [from[0] + part * along[0], from[1] + part * along[1]];
+            square(at, LINE_HALF)
+        }));
+    }
     let mut place_one = |&([x, y], label): &([f64; 2], &str)| {
         let (near, far) = (0.7 * DISTANCE, 0.8 * LINE);
         let candidates = [
@@ -88,7 +100,7 @@ mod tests {
         let frame = [0.0, 0.0, 300.0, 120.0];
         // The second lies where the first label would go by its first choice; the last has no room at all.
         let points = [([120.0, 60.0], "first"), ([140.0, 60.0], "second")];
-        let places = place(&points, &[], frame);
+        let places = place(&points, (&[], &[]), frame);
         let (at, anchor) = places[0].unwrap();
         assert!(at[0] < 120.0, "{at:?}");
         let first = area(at, anchor, text_width("first"));
@@ -101,6 +113,11 @@ mod tests {
                 || second[3] <= first[1]
         );
         let wide = "a label wider than its frame";
-        assert_eq!(place(&[([100.0, 50.0], wide)], &[], frame), [None]);
+        assert_eq!(place(&[([100.0, 50.0], wide)], (&[], &[]), frame), [None]);
+        // A line through the first choice: the label goes to the other side. Dashes struck through labels once.
+        let line = [[125.0, 0.0], [125.0, 120.0]];
+        let places = place(&points[..1], (&[], &[line]), frame);
+        let (at, anchor) = places[0].unwrap();
+        assert!(area(at, anchor, text_width("first"))[2] < 123.0);
     }
 }

@@ -46,7 +46,7 @@ pub(super) fn cost(report: &RunReport) -> String {
         found["milliseconds_per_rotation"].as_f64()
     };
     let mut lines = vec![
-        ["effect", "on", "why", "functions", "CPU ms a rotation"]
+        ["effect", "on", "why", "functions", "ms a rotation"]
             .map(str::to_owned)
             .to_vec(),
     ];
@@ -59,7 +59,9 @@ pub(super) fn cost(report: &RunReport) -> String {
                 false => "off".to_owned(),
             },
             words(&effect["reason"]),
-            words(&effect["rank"]),
+            effect["functions"]
+                .as_f64()
+                .map_or_else(String::new, |functions| format!("{functions:.1}")),
             time.map_or_else(String::new, |time| format!("{time:.2}")),
         ]);
     }

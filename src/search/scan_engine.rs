@@ -27,6 +27,21 @@ pub struct Adapter {
     pub rotations_in_flight: usize,
 }
 
+/// Names the user's runtime folder where the environment does not, as it does not in many containers: graphics drivers
+/// look there for a display and write `error: XDG_RUNTIME_DIR` on the terminal without it. None is needed.
+///
+/// To be called before the program has other threads.
+pub fn name_runtime_folder() {
+    #[cfg(target_os = "linux")]
+    if std::env::var_os("XDG_RUNTIME_DIR").is_none() {
+        // SAFETY: the process has one thread, so that no other reads the environment meanwhile.
+        unsafe {
+            let folder = format!("/run/user/{}", libc::getuid());
+            std::env::set_var("XDG_RUNTIME_DIR", folder);
+        }
+    }
+}
+
 /// An engine that is ready to scan.
 pub(crate) struct ScanEngine<T: Real> {
     /// Maps voxels to places, and scans where there is nothing else to.

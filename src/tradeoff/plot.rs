@@ -15,6 +15,7 @@ fn colour(parameter: Parameter) -> Colour {
     match parameter {
         Parameter::Default => [0x00, 0x00, 0x00],
         Parameter::Reference => [0x77, 0x77, 0x77],
+        Parameter::Repeat => [0xbb, 0xbb, 0xbb],
         Parameter::Option("tolerance") => [0xd5, 0x5e, 0x00],
         Parameter::Option("spacing") => [0xe6, 0x9f, 0x00],
         Parameter::Option("resolution") => [0x00, 0x9e, 0x73],
@@ -67,8 +68,8 @@ pub fn plot(tradeoff: &Tradeoff) -> Result<String, ChartError> {
         .collect::<Vec<_>>()
     };
     let missed = |run: &Measured| {
-        let counted = run.setting.parameter != Parameter::Reference;
-        counted.then_some((FIRST as f64 * (1.0 - run.agreement)).max(NONE_MISSED))
+        let is_reference = run.setting.parameter == Parameter::Reference;
+        (!is_reference).then_some((FIRST as f64 * (1.0 - run.agreement)).max(NONE_MISSED))
     };
     let mut panels = vec![
         panel(
@@ -80,6 +81,7 @@ pub fn plot(tradeoff: &Tradeoff) -> Result<String, ChartError> {
             "Against the reference",
             Axis {
                 named: Some((NONE_MISSED, "none")),
+                most: Some(FIRST as f64),
                 ..Axis::ten("of its first 100 rows, missed (%)")
             },
             &points(&missed, |run| run.front_agreement),

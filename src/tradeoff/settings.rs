@@ -16,6 +16,8 @@ pub enum Parameter {
     Default,
     /// What agreement is measured by: the default with the most rotations of the sweep.
     Reference,
+    /// The default at a few rotations more or fewer, which differs from it by noise alone.
+    Repeat,
     /// The option of this name.
     Option(&'static str),
     /// Several at once.
@@ -156,11 +158,17 @@ impl Parameter {
         options.chain([Self::Combination]).collect()
     }
 
+    /// Whether settings of it are for taking: the reference and repeats only measure others.
+    pub fn is_choice(self) -> bool {
+        !matches!(self, Self::Reference | Self::Repeat)
+    }
+
     /// Name as on the command line and in the table.
     pub fn name(self) -> &'static str {
         match self {
             Self::Default => "default",
             Self::Reference => "reference",
+            Self::Repeat => "repeat",
             Self::Option(name) => option_named(name).map_or(name, Definition::long),
             Self::Combination => "combination",
         }
@@ -271,7 +279,8 @@ pub struct Planned {
 }
 
 /// The settings of a sweep of `parameters` around `default`, which comes first, and the reference second; and
-/// settings out of range.
+/// settings out of range. Of the two repeats one is the third and one the last, so that they show a drift of the
+/// machine's speed, too.
 ///
 /// # Errors
 /// [`SearchError::Option`] when the reference is out of range.
@@ -280,11 +289,21 @@ pub fn settings(
     planned: Planned,
     parameters: &[Parameter],
 ) -> Result<(Vec<Setting>, Vec<Refused>), SearchError> {
-    let most = REFERENCE_ROTATIONS * default.search.rotations;
-    let most = [Change::new("rotations", most)];
+    let count = default.search.rotations;
+    let with = |parameter, name, rotations| {
+        let change = Change::new("rotations", rotations);
+        Setting::new(parameter, name, &[change], default)
+    };
+    let fewer = count.checked_sub(4).filter(|&fewer| fewer > 0);
+    let last = with(Parameter::Repeat, "repeat 2", fewer.unwrap_or(count + 8))?;
     let mut settings = vec![
         Setting::new(Parameter::Default, "default", &[], default)?,
-        Setting::new(Parameter::Reference, "reference", &most, default)?,
+        with(
+            Parameter::Reference,
+            "reference",
+            REFERENCE_ROTATIONS * count,
+        )?,
+        with(Parameter::Repeat, "repeat 1", count + 4)?,
     ];
     let mut refused = Vec::new();
     let mut add = |parameter, name: &str, changes: &[Change]| {
@@ -308,6 +327,9 @@ pub fn settings(
     for (name, changes) in combinations(default, planned) {
         add(Parameter::Combination, name, &changes);
     }
+    if settings.iter().all(|known| known.options != last.options) {
+        settings.push(last);
+    }
     Ok((settings, refused))
 }
 
@@ -328,6 +350,12 @@ mod tests {
         let settings = swept(&DockOptions::default());
         assert_eq!(settings[0].name, "default");
         assert_eq!(settings[1].name, "reference");
+        let repeats = settings.iter().enumerate();
+        let repeats = repeats.filter(|(_, setting)| setting.parameter == Parameter::Repeat);
+        let rotations: Vec<_> = repeats
+            .map(|(index, setting)| (index, setting.options.search.rotations))
+            .collect();
+        assert_eq!(rotations, [(2, 3604), (settings.len() - 1, 3596)]);
         for (index, setting) in settings.iter().enumerate() {
             assert_eq!(setting.arguments.is_empty(), index == 0);
             let same = |other: &Setting| other.options == setting.options;

@@ -256,9 +256,10 @@ fn estimate(default: &Measured, ready: &[(Setting, PreparedPair)]) -> f64 {
 }
 
 /// Marks what is on the fronts: of time and error among settings of the default's score, of time and agreement among
-/// all. The reference agrees with itself, so it is on neither and beats nothing.
+/// all. The reference agrees with itself, and repeats differ from the default by noise: they are on neither and beat
+/// nothing.
 fn mark_fronts(measured: &mut [Measured], default: &DockOptions) {
-    let other = |run: &Measured| run.setting.parameter != Parameter::Reference;
+    let other = |run: &Measured| run.setting.parameter.is_choice();
     let errors: Vec<(f64, Option<f64>)> = measured
         .iter()
         .map(|run| {

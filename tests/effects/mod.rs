@@ -161,7 +161,7 @@ fn what_the_inputs_cannot_feed_is_off_and_cannot_be_forced() {
             effect["reason"].as_str().unwrap().contains("ligand"),
             "{effect}"
         );
-        assert_eq!(effect["rank"], 0);
+        assert_eq!(effect["functions"], 0.0);
     }
     for name in ["electrostatics", "contact"] {
         let output = cargo_bin_cmd!("knotdock")

@@ -71,3 +71,38 @@ fn a_lack_of_memory_is_a_failure_with_a_remedy() {
     }
     assert!(!place.path("knots.csv").exists());
 }
+
+/// Ctrl-C ended a command without a word. It still ends it as the signal does.
+#[cfg(unix)]
+#[test]
+fn a_command_that_is_interrupted_says_so() {
+    use std::os::unix::process::ExitStatusExt;
+    use std::process::{Command, Stdio};
+
+    let folder = tempfile::tempdir().unwrap();
+    let pipe = folder.path().join("pipe.pdb");
+    let made = Command::new("mkfifo").arg(&pipe).status().unwrap();
+    assert!(made.success());
+    for signal in [libc::SIGINT, libc::SIGTERM] {
+        // The program waits for whoever writes to the pipe.
+        let program = Command::new(env!("CARGO_BIN_EXE_knotdock"))
+            .args(["dock", "--json"])
+            .args([&pipe, &pipe])
+            .current_dir(folder.path())
+            .stdout(Stdio::piped())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        // It opens the pipe once it is set up, and this end opens when it has.
+        let writer = std::fs::OpenOptions::new().write(true).open(&pipe).unwrap();
+        // SAFETY: the process is a child that has not been waited for.
+        unsafe { libc::kill(program.id() as i32, signal) };
+        let output = program.wait_with_output().unwrap();
+        drop(writer);
+        assert_eq!(output.status.signal(), Some(signal));
+        let reported = String::from_utf8(output.stderr).unwrap();
+        assert!(reported.contains("was interrupted"), "{reported}");
+        let object: serde_json::Value = serde_json::from_slice(&output.stdout).unwrap();
+        assert_eq!(object["error"]["message"], "the command was interrupted");
+    }
+}

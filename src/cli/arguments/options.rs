@@ -166,8 +166,8 @@ pub struct GivenOptions {
     /// The options, by default where they were not given.
     pub options: DockOptions,
     given: Vec<String>,
-    /// Whether rotations of the whole circle were given by their angle.
-    by_angle: bool,
+    /// Whether rotations were given by their angle.
+    pub by_angle: bool,
 }
 
 impl GivenOptions {

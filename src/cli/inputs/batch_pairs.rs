@@ -9,6 +9,7 @@ use crate::options::text::first_paragraph;
 use crate::output::shards::Shard;
 use crate::output::tables::batch_results::RESULTS;
 use crate::output::tables::pair_table::{PairRow, read_pairs};
+use crate::plain_path::plain_path;
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser};
 use knotdock_structures::molecule::InputSpec;
@@ -246,7 +247,8 @@ const PACKED: f64 = 4.0;
 
 /// A file of the table as seen from here, its chains behind it.
 fn at(folder: &Path, file: &str) -> String {
-    folder.join(file).to_string_lossy().into_owned()
+    let path = plain_path(&folder.join(file));
+    path.to_string_lossy().into_owned()
 }
 
 /// A file's part of a pair's name.

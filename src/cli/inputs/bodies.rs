@@ -21,6 +21,7 @@ use crate::cli::inputs::ball_files::ball_file_of;
 use crate::cli::inputs::molecules::{Input, folders_of, label};
 use crate::cli::inputs::room::{room_to_read, room_to_sample};
 use crate::cli::inputs::shapes::{ShapeInput, is_shape};
+use crate::cli::inputs::traces::refuse_traces;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 use crate::cli::messages::library_errors::refused;
@@ -67,11 +68,20 @@ impl Bodies {
             receptor.locate(&folders)?.spec(),
             ligand.locate(&folders)?.spec(),
         ];
-        Self::of(specs, options)
+        Self::whatever(specs, options)
     }
 
-    /// Reads two bodies of one kind.
+    /// Reads two bodies of one kind that can be docked.
     pub fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
+        let bodies = Self::whatever(specs, options)?;
+        if let Self::Molecules(inputs) = &bodies {
+            refuse_traces(["receptor", "ligand"].into_iter().zip(inputs.as_ref()))?;
+        }
+        Ok(bodies)
+    }
+
+    /// Reads two bodies of one kind, of an earlier run what it docked.
+    fn whatever(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
         let [receptor, ligand] = &specs;
         let are_meshes = [receptor, ligand].map(|spec| is_shape(&spec.path));
         if are_meshes[0] == are_meshes[1] {

@@ -14,3 +14,4 @@ pub mod request;
 pub mod room;
 pub mod shapes;
 pub mod solids;
+pub mod traces;

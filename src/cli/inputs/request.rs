@@ -70,6 +70,8 @@ pub struct Request {
     pub offset: Option<f64>,
     /// Further lengths that are given.
     pub given: GivenLengths,
+    /// Whether a number of rotations is none that was typed: it stands for an angle, or an earlier run had it.
+    pub is_angle: bool,
 }
 
 impl Request {
@@ -91,6 +93,7 @@ impl Request {
             native,
             offset,
             given: lengths,
+            is_angle: given.by_angle || !given.has("rotations"),
             options: given.options,
         }
     }
@@ -132,6 +135,7 @@ impl Request {
                 cluster_radius: true,
                 alpha: true,
             },
+            is_angle: true,
             options: run.options,
         })
     }

@@ -5,7 +5,7 @@
 
 use std::fs;
 
-use crate::dock::memory::size::{as_size, named};
+use crate::dock::memory::size::{as_size, in_words, named};
 use crate::geometry::obstacle::reduce::BYTES_REDUCED;
 use knotdock_structures::molecule::InputSpec;
 
@@ -48,7 +48,9 @@ pub fn room_for_balls(balls: u64, allowed: Option<u64>) -> Result<(), Failure> {
     };
     let least = as_size(named(needed));
     let error = format!(
-        "{balls} pairs of balls need up to {needed} bytes of memory, and {allowed} are allowed"
+        "{balls} pairs of balls need up to {} of memory, and {} are allowed",
+        in_words(needed),
+        in_words(allowed)
     );
     Err(Failure::input(error).remedy(format!(
         "use a coarser --grid, or allow at least --memory {least}"
@@ -63,8 +65,11 @@ fn refused(work: &str, needed: u64, allowed: Option<u64>) -> Option<Failure> {
         "sampling" => format!("use a coarser --sample-grid, or allow at least --memory {least}"),
         _ => format!("give a smaller file, or allow at least --memory {least}"),
     };
-    let error =
-        format!("{work} alone needs {needed} bytes of memory or more, and {allowed} are allowed");
+    let error = format!(
+        "{work} alone needs {} of memory or more, and {} are allowed",
+        in_words(needed),
+        in_words(allowed)
+    );
     Some(Failure::input(error).remedy(remedy))
 }
 

@@ -7,6 +7,7 @@ use crate::dock::outcome::DockOutcome;
 use crate::dock::plan::DockPlan;
 use crate::named_columns::listed;
 use crate::options::EngineChoice;
+use crate::options::values::{angle_of_rotations, rotations_of_angle};
 use crate::output::files::seal::REPORT;
 use crate::output::tables::report::counted;
 use crate::rank::sharp::{SharpFinding, SharpPose};
@@ -15,7 +16,7 @@ use crate::tradeoff::choice::Chosen;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_structures::molecule::LabelReport;
 
-use crate::cli::messages::dock::known_text;
+use crate::cli::messages::dock::{known_text, milliseconds_text};
 
 /// The effects that score and why, and what is known of the complex. Of the effects that do not score those that the
 /// inputs call for and lack something.
@@ -67,9 +68,24 @@ fn unknown_text(labels: &LabelReport) -> Option<String> {
 
 /// How many rotations are searched, and the time and memory that the search is expected to take; of the CPU in
 /// `seconds`, where they are known.
-pub fn expected_text(plan: &DockPlan, seconds: f64, chosen: Option<&Chosen>) -> String {
+///
+/// A number of rotations that may be meant as an angle is answered with that angle's, unless it `is_angle`.
+pub fn expected_text(
+    plan: &DockPlan,
+    seconds: f64,
+    chosen: Option<&Chosen>,
+    is_angle: bool,
+) -> String {
     let rotations = plan.search.space.sampled(plan.rotations);
     let mut text = format!("Searches {} {rotations}", plan.rotations);
+    if plan.options.search.symmetry.is_none() {
+        let angle = angle_of_rotations(plan.rotations);
+        text += &format!(", about {angle:.0} degrees apart");
+        let meant = rotations_of_angle(plan.rotations as f64).filter(|_| !is_angle);
+        if let Some(count) = meant {
+            text += &format!(" (--rotations {}deg would be {count})", plan.rotations);
+        }
+    }
     if let Some(finer) = plan.options.search.fine_rotations {
         text += &format!(", then {finer} finer ones about the best");
     }
@@ -117,24 +133,30 @@ pub fn time_text(seconds: f64) -> String {
 /// What a finished run of so many seconds cost, how far the fast path was from the exact score, and what else decided
 /// the ranking.
 pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String {
-    let costs = outcome.effects.iter().filter(|cost| cost.on);
-    let costs: Vec<String> = costs
-        .map(|cost| {
-            let time = cost.milliseconds_per_rotation.max(0.0);
-            format!("{} {time:.2} ms", cost.effect)
-        })
-        .collect();
-    let mut lines = vec![format!(
-        "Took {:.1} s; a rotation takes {}",
-        seconds,
-        costs.join(", ")
-    )];
+    let costs = || outcome.effects.iter().filter(|cost| cost.on);
+    let rotation = costs().map(|cost| cost.milliseconds_per_rotation).sum();
+    let parts = costs().map(|cost| {
+        let time = milliseconds_text(cost.milliseconds_per_rotation);
+        format!("{} {time}", cost.effect)
+    });
+    let parts: Vec<String> = parts.collect();
+    let mut lines = vec![match parts.len() {
+        0 | 1 => format!(
+            "Took {seconds:.1} s; a rotation takes {}",
+            milliseconds_text(rotation)
+        ),
+        _ => format!(
+            "Took {seconds:.1} s; a rotation takes {} ({})",
+            milliseconds_text(rotation),
+            parts.join(", ")
+        ),
+    }];
     if let Some(adapter) = &outcome.adapter {
         lines.push(format!("Searched on {}", adapter.name));
     }
     if outcome.error.worst.is_finite() {
         lines.push(format!(
-            "Error: scores of the search are within {} of the exact ones, of the best score ({} checked; tolerance {})",
+            "Accuracy: scores of the search are within {} of the exact ones, of the best score ({} checked; tolerance {})",
             share_text(outcome.error.worst),
             counted(outcome.error.poses, "pose"),
             share_text(plan.options.kernel.tolerance)

@@ -130,7 +130,7 @@ impl<'a> Console<'a> {
 
     /// Tells whoever listens that a stage of so many steps begins; the terminal has lines of its own for them.
     pub fn begins(&self, stage: &str, total: usize) {
-        if let (Some(listener), false) = (self.listener, self.quiet) {
+        if let (Some(listener), false) = (self.listener, self.quiet || total == 0) {
             listener.stage(stage, total as u64);
         }
     }
@@ -248,6 +248,10 @@ impl ProgressLine<'_> {
 
 impl Progress for ProgressLine<'_> {
     fn stage(&self, name: &str, total: u64) {
+        // A stage without steps would show as 0 of 0.
+        if total == 0 {
+            return;
+        }
         if self.is_heard {
             if let Some(listener) = self.listener {
                 listener.stage(name, total);

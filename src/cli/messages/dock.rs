@@ -34,7 +34,7 @@ pub fn outcome_text(plan: &DockPlan, outcome: &DockOutcome) -> String {
         lines.insert(
             0,
             format!(
-                "Searched on {} ({}{}), {} rotations in flight; the times below are of one CPU thread",
+                "Searched on {} ({}{}), {} rotations in flight; the times below are on the clock",
                 adapter.name,
                 adapter.backend,
                 if adapter.software {
@@ -47,7 +47,7 @@ pub fn outcome_text(plan: &DockPlan, outcome: &DockOutcome) -> String {
         );
     }
     lines.push(format!(
-        "All together: rank {}, {:.1e} of the best score lost by compression",
+        "All together: {} compressed functions, {:.1e} of the best score lost by compression",
         outcome.rank, outcome.rank_error
     ));
     if let Some(stopped) = outcome.stopped {
@@ -79,16 +79,22 @@ pub fn outcome_text(plan: &DockPlan, outcome: &DockOutcome) -> String {
 fn effect_text(cost: &EffectCost) -> String {
     match (cost.on, cost.effect) {
         (false, effect) => format!("Effect {effect}: off ({})", cost.reason),
-        (true, Effect::Shape) => format!(
-            "Effect shape ({}): rank {}, {:.2} ms a rotation",
-            cost.reason, cost.rank, cost.milliseconds_per_rotation
-        ),
         (true, effect) => format!(
-            "Effect {effect} ({}): without it the rank is lower by {} and a rotation takes {:.2} ms less",
+            "Effect {effect} ({}): {:.1} of the compressed functions, {} of a rotation",
             cost.reason,
-            cost.rank,
-            cost.milliseconds_per_rotation.max(0.0)
+            cost.functions,
+            milliseconds_text(cost.milliseconds_per_rotation)
         ),
+    }
+}
+
+/// A time in milliseconds as people say it, to two digits.
+pub fn milliseconds_text(milliseconds: f64) -> String {
+    match milliseconds {
+        ms if ms >= 9.95 => format!("{ms:.0} ms"),
+        ms if ms >= 0.995 => format!("{ms:.1} ms"),
+        ms if ms >= 0.0995 => format!("{ms:.2} ms"),
+        ms => format!("{:.0} µs", 1e3 * ms),
     }
 }
 

@@ -1,12 +1,14 @@
-//! The warning that one molecule to dock is in the file of the other.
+//! The warnings that one molecule to dock is in the file of the other, or is the other.
 
 use crate::evaluate::{SharedChains, shared_chains};
+use knotdock_structures::molecule::Molecule;
 
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::inputs::molecules::Input;
 
 impl Bodies {
-    /// Adds a warning to the report of a molecule that holds the other one already, with further chains beside.
+    /// Adds a warning to the report of a molecule that holds the other one already, with further chains beside, or is
+    /// the same.
     pub fn note_shared_chains(&mut self) {
         let Self::Molecules(inputs) = self else {
             return;
@@ -18,8 +20,26 @@ impl Bodies {
         } else if let Some(shared) = shared_chains(&receptor.molecule, &ligand.molecule) {
             let text = warning(&shared, ["ligand", "receptor"], ligand);
             ligand.molecule.report.warnings.push(text);
+        } else if receptor.record.is_like(&ligand.record)
+            || are_alike(&receptor.molecule, &ligand.molecule)
+        {
+            let text = "it is the same molecule as the receptor: if the two are related by a rotation, as in a \
+                        homodimer, dock one file with --symmetry C2, which searches such poses alone";
+            ligand.molecule.report.warnings.push(text.to_owned());
         }
     }
+}
+
+/// Whether two molecules have the same peptides by their sequences, and some.
+fn are_alike(one: &Molecule, other: &Molecule) -> bool {
+    let sequences = |molecule: &Molecule| {
+        let chains = molecule.peptide_chains().into_iter();
+        let mut sequences: Vec<String> = chains.map(|chain| chain.sequence()).collect();
+        sequences.sort_unstable();
+        sequences
+    };
+    let sequences = [one, other].map(sequences);
+    !sequences[0].is_empty() && sequences[0] == sequences[1]
 }
 
 /// What one side holds of the other, and how to leave it out; `holder` is the side that holds it.

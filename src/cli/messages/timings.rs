@@ -3,8 +3,7 @@
 use crate::dock::outcome::DockOutcome;
 use crate::output::tables::report::align;
 
-/// A line a stage, with its time on the clock and of all processors, and a line an effect, with what it adds to a
-/// rotation on one thread.
+/// A line a stage, with its time on the clock and of all processors, and a line an effect, with its part of a rotation.
 pub fn timings_text(outcome: &DockOutcome) -> String {
     let mut stages = vec![["stage", "wall s", "CPU s"].map(str::to_owned).to_vec()];
     stages.extend(outcome.timing.iter().map(|stage| {
@@ -16,14 +15,14 @@ pub fn timings_text(outcome: &DockOutcome) -> String {
         ]
     }));
     let mut effects = vec![
-        ["effect", "rank", "ms a rotation"]
+        ["effect", "functions", "ms a rotation"]
             .map(str::to_owned)
             .to_vec(),
     ];
     effects.extend(outcome.effects.iter().map(|cost| {
         vec![
             cost.effect.to_string(),
-            cost.rank.to_string(),
+            format!("{:.1}", cost.functions),
             format!("{:.3}", cost.milliseconds_per_rotation),
         ]
     }));

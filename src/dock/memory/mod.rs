@@ -10,7 +10,7 @@ use crate::options::{DockOptions, EngineChoice, KernelOptions};
 use crate::pose_space::PoseSpace;
 use knotdock_scoring::engine::Plan;
 use size::named;
-use stages::{AtOnce, MemoryStage, Sizes};
+use stages::{MemoryStage, Sizes};
 
 /// Bytes that rotations in flight may take of a graphics processor's memory, which may be the computer's own.
 const GRAPHICS_BYTES: u64 = 512 << 20;
@@ -22,7 +22,7 @@ const MAX_IN_FLIGHT: usize = 1 << 16;
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct MemoryPlan {
     sizes: Sizes,
-    at_once: AtOnce,
+    in_flight: usize,
     allowed: Option<u64>,
     /// Rotations that would be in flight if there were more than enough of them.
     pub most_in_flight: usize,
@@ -43,7 +43,7 @@ impl MemoryPlan {
     ) -> Result<Self, SearchError> {
         let sizes = Sizes::new(scene, engine, options, (space, refined));
         let allowed = options.machine.memory;
-        let needed = sizes.peak(AtOnce::ONE);
+        let needed = sizes.peak(1);
         if let Some(allowed) = allowed.filter(|&allowed| needed > allowed) {
             let limits = (named(needed), allowed);
             return Err(too_little(scene, options, (space, refined), limits));
@@ -57,20 +57,15 @@ impl MemoryPlan {
                 left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
             }
         };
-        let fits = |rotations, effects| {
-            let needed = graphics + sizes.peak(AtOnce { rotations, effects });
+        let fits = |rotations| {
+            let needed = graphics + sizes.peak(rotations);
             allowed.is_none_or(|allowed| needed <= allowed)
         };
         let threads = options.machine.threads.count().min(MAX_IN_FLIGHT);
-        let most_in_flight = most(threads, |rotations| fits(rotations, 1));
-        let rotations = most_in_flight.min(options.search.rotations);
-        let at_once = AtOnce {
-            rotations,
-            effects: most(rotations, |effects| fits(rotations, effects)),
-        };
+        let most_in_flight = most(threads, fits);
         Ok(Self {
             sizes,
-            at_once,
+            in_flight: most_in_flight.min(options.search.rotations),
             allowed,
             most_in_flight,
             graphics,
@@ -89,12 +84,7 @@ impl MemoryPlan {
 
     /// Rotations in flight at once.
     pub fn in_flight(&self) -> usize {
-        self.at_once.rotations
-    }
-
-    /// Effects that are timed at once.
-    pub fn effects_at_once(&self) -> usize {
-        self.at_once.effects
+        self.in_flight
     }
 
     /// Rotations in flight at the rank that the engine turned out to have, at least one.
@@ -107,12 +97,12 @@ impl MemoryPlan {
 
     /// Bytes that the run takes at its peak.
     pub fn bytes(&self) -> u64 {
-        self.sizes.peak(self.at_once) + self.graphics
+        self.sizes.peak(self.in_flight) + self.graphics
     }
 
     /// The stage that takes the most, with its parts.
     pub fn largest(&self) -> Option<MemoryStage> {
-        self.sizes.largest(self.at_once)
+        self.sizes.largest(self.in_flight)
     }
 }
 
@@ -143,7 +133,7 @@ fn too_little(
         let spacing = rounded_up(plan.spacing(), scene.angstrom);
         let plan = plan.with_spacing(spacing).ok()?;
         let sizes = Sizes::new(scene, &plan, &coarser, refining);
-        (named(sizes.peak(AtOnce::ONE)) <= allowed).then_some(KernelOptions {
+        (named(sizes.peak(1)) <= allowed).then_some(KernelOptions {
             spacing: Some(spacing),
             ..coarser.kernel
         })

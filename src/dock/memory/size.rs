@@ -22,10 +22,47 @@ pub fn as_size(bytes: u64) -> String {
     }
 }
 
+/// A size in the unit that people use for it, to four digits: `87 MB`, or `512 MiB` where it is so many.
+pub fn in_words(bytes: u64) -> String {
+    let is_binary = bytes % NAMED_STEP != 0 && bytes % (1 << 20) == 0;
+    let (step, units): (f64, [&str; 5]) = if is_binary {
+        (1024.0, ["bytes", "KiB", "MiB", "GiB", "TiB"])
+    } else {
+        (1000.0, ["bytes", "kB", "MB", "GB", "TB"])
+    };
+    let (mut size, mut unit) = (bytes as f64, 0);
+    while size >= step && unit + 1 < units.len() {
+        (size, unit) = (size / step, unit + 1);
+    }
+    let decimals = 3usize.saturating_sub(size.max(1.0).log10() as usize);
+    let text = format!("{size:.decimals$}");
+    let text = match text.contains('.') {
+        true => text.trim_end_matches('0').trim_end_matches('.'),
+        false => &text,
+    };
+    format!("{text} {}", units[unit])
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::options::values::size;
+
+    #[test]
+    fn sizes_have_units() {
+        for (bytes, text) in [
+            (0, "0 bytes"),
+            (999, "999 bytes"),
+            (12_345, "12.35 kB"),
+            (87_000_000, "87 MB"),
+            (1_234_000_000, "1.234 GB"),
+            (4_000_000_000, "4 GB"),
+            (512 << 20, "512 MiB"),
+            (256 << 30, "256 GiB"),
+        ] {
+            assert_eq!(in_words(bytes), text);
+        }
+    }
 
     /// What is named can be pasted, and leaves half a megabyte and 2%.
     #[test]

@@ -18,7 +18,6 @@ use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::so3::{BYTES_RELAXED, MAX_RELAXED};
-use knotdock_scoring::terms::effect::Effect;
 use nalgebra::UnitQuaternion;
 use serde::Serialize;
 
@@ -69,23 +68,6 @@ impl MemoryStage {
     pub fn bytes(&self) -> u64 {
         self.parts.iter().map(|part| part.bytes).sum()
     }
-}
-
-/// What runs at once.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) struct AtOnce {
-    /// Rotations in flight.
-    pub rotations: usize,
-    /// Effects that are timed.
-    pub effects: usize,
-}
-
-impl AtOnce {
-    /// One of each: the least.
-    pub const ONE: Self = Self {
-        rotations: 1,
-        effects: 1,
-    };
 }
 
 /// Sizes that decide what a run takes. All but `held` and `read` follow from the inputs and options.
@@ -173,11 +155,7 @@ impl Sizes {
 
     /// Bytes of the largest stage without rotations in flight, and without what was held before.
     pub fn fixed(&self) -> u64 {
-        let none = AtOnce {
-            rotations: 0,
-            effects: 1,
-        };
-        let stages = self.stages(none, self.rank);
+        let stages = self.stages(0, self.rank);
         let own = stages
             .iter()
             .map(|stage| stage.bytes().saturating_sub(self.held));
@@ -186,26 +164,24 @@ impl Sizes {
     }
 
     /// Bytes of the run's largest stage.
-    pub fn peak(&self, at_once: AtOnce) -> u64 {
-        let stages = self.stages(at_once, self.rank);
+    pub fn peak(&self, rotations: usize) -> u64 {
+        let stages = self.stages(rotations, self.rank);
         stages.iter().map(MemoryStage::bytes).max().unwrap_or(0)
     }
 
     /// The run's largest stage.
-    pub fn largest(&self, at_once: AtOnce) -> Option<MemoryStage> {
-        let stages = self.stages(at_once, self.rank).into_iter();
+    pub fn largest(&self, rotations: usize) -> Option<MemoryStage> {
+        let stages = self.stages(rotations, self.rank).into_iter();
         stages.max_by_key(MemoryStage::bytes)
     }
 
     /// Bytes of the search with so many rotations in flight, at a rank that is known.
     pub fn search_peak(&self, rotations: usize, rank: usize) -> u64 {
-        let effects = 1;
-        let at_once = AtOnce { rotations, effects };
-        self.search(at_once, rank).bytes()
+        self.search(rotations, rank).bytes()
     }
 
     /// All stages in their order, with an engine of a rank.
-    fn stages(&self, at_once: AtOnce, rank: usize) -> Vec<MemoryStage> {
+    fn stages(&self, rotations: usize, rank: usize) -> Vec<MemoryStage> {
         let mut stages = vec![
             MemoryStage {
                 stage: "read",
@@ -215,17 +191,17 @@ impl Sizes {
                 }],
             },
             self.plan(),
-            self.prepare(at_once, rank),
-            self.search(at_once, rank),
+            self.prepare(rotations),
+            self.search(rotations, rank),
         ];
         if self.rotations[1] > 0 {
-            stages.push(self.fine(at_once, rank));
+            stages.push(self.fine(rotations, rank));
         }
         stages.extend([
-            self.refine(at_once),
-            self.rescore(at_once),
-            self.cluster(at_once),
-            self.score(at_once),
+            self.refine(rotations),
+            self.rescore(rotations),
+            self.cluster(rotations),
+            self.score(rotations),
             self.write(),
         ]);
         stages
@@ -262,8 +238,8 @@ impl Sizes {
         self.rotations[0].div_ceil(self.images)
     }
 
-    fn threads(&self, at_once: AtOnce) -> u64 {
-        THREAD * at_once.rotations as u64
+    fn threads(&self, rotations: usize) -> u64 {
+        THREAD * rotations as u64
     }
 
     /// The exact score and the pose terms.
@@ -287,43 +263,26 @@ impl Sizes {
         self.stage("plan", &[("relaxing rotations", relaxing)])
     }
 
-    /// The receptor is transformed, the rank chosen, and what each effect costs is timed.
-    fn prepare(&self, at_once: AtOnce, rank: usize) -> MemoryStage {
+    /// The receptor is transformed and the rank chosen.
+    fn prepare(&self, rotations: usize) -> MemoryStage {
         let engine = &self.engine;
         let whole = engine.choice(engine.without(None).rank);
-        let mut parts: Vec<u64> = engine
-            .effects
-            .iter()
-            .map(|&(effect, _)| match effect {
-                Effect::Shape => engine.choice(engine.only(Effect::Shape).rank),
-                effect => engine.choice(engine.without(Some(effect)).rank),
-            })
-            .collect();
-        parts.sort_unstable_by(|a, b| b.cmp(a));
-        let timed = match parts.len() {
-            1 => engine.component * rank as u64 + self.workspace(rank),
-            _ => {
-                let images = self.workspace(rank) - engine.workspace_at(rank);
-                let parts = parts.iter().take(at_once.effects).map(|part| part + images);
-                engine.component * rank as u64 + parts.sum::<u64>()
-            }
-        };
-        let transforms = at_once.rotations.max(1) as u64 * engine.transform;
+        let transforms = rotations.max(1) as u64 * engine.transform;
         self.stage(
             "prepare",
             &[
                 ("spectra", self.spectra()),
-                ("engines", whole.max(timed).max(transforms)),
+                ("engines", whole.max(transforms)),
                 ("scorers", self.scorers()),
-                ("threads", self.threads(at_once)),
+                ("threads", self.threads(rotations)),
             ],
         )
     }
 
-    fn search(&self, at_once: AtOnce, rank: usize) -> MemoryStage {
+    fn search(&self, rotations: usize, rank: usize) -> MemoryStage {
         let peak = size_of::<Peak>() as u64;
         let groups = size_of::<RotationGroup>() as u64 * self.groups();
-        let lists = 2 * at_once.rotations as u64 * self.scanned() * peak;
+        let lists = 2 * rotations as u64 * self.scanned() * peak;
         self.stage(
             "search",
             &[
@@ -331,7 +290,7 @@ impl Sizes {
                 ("engines", self.engines(rank)),
                 (
                     "rotations in flight",
-                    at_once.rotations as u64 * self.in_flight(rank),
+                    rotations as u64 * self.in_flight(rank),
                 ),
                 ("scorers", self.scorers()),
                 ("peaks", lists + groups),
@@ -344,7 +303,7 @@ impl Sizes {
     }
 
     /// The finer search keeps all peaks.
-    fn fine(&self, at_once: AtOnce, rank: usize) -> MemoryStage {
+    fn fine(&self, rotations: usize, rank: usize) -> MemoryStage {
         let peak = size_of::<Peak>() as u64;
         let [coarse, finer] = self.rotations;
         let found = (self.searched_finer + self.images) * self.per_rotation;
@@ -356,7 +315,7 @@ impl Sizes {
             &[
                 ("spectra", if self.is_refined { self.spectra() } else { 0 }),
                 ("engines", self.engines(rank)),
-                ("rotations in flight", at_once.rotations as u64 * in_flight),
+                ("rotations in flight", rotations as u64 * in_flight),
                 ("scorers", self.scorers()),
                 (
                     "peaks",
@@ -371,7 +330,7 @@ impl Sizes {
         (size_of::<Peak>() + size_of::<RefinedPose>()) as u64 * self.poses
     }
 
-    fn refine(&self, at_once: AtOnce) -> MemoryStage {
+    fn refine(&self, rotations: usize) -> MemoryStage {
         let grid_poses = size_of::<Pose>() as u64 * self.poses;
         self.stage(
             "refine",
@@ -380,7 +339,7 @@ impl Sizes {
                 ("potential grid", self.potential_grid),
                 ("poses", self.placed() + grid_poses),
                 ("scorers", self.scorers()),
-                ("threads", self.threads(at_once)),
+                ("threads", self.threads(rotations)),
             ],
         )
     }
@@ -390,7 +349,7 @@ impl Sizes {
         size_of::<Candidate>() as u64 * self.poses
     }
 
-    fn rescore(&self, at_once: AtOnce) -> MemoryStage {
+    fn rescore(&self, rotations: usize) -> MemoryStage {
         self.stage(
             "rescore",
             &[
@@ -398,12 +357,12 @@ impl Sizes {
                 // Sorting takes half of them again.
                 ("candidates", self.candidates() * 3 / 2),
                 ("scorers", self.scorers()),
-                ("threads", self.threads(at_once)),
+                ("threads", self.threads(rotations)),
             ],
         )
     }
 
-    fn cluster(&self, at_once: AtOnce) -> MemoryStage {
+    fn cluster(&self, rotations: usize) -> MemoryStage {
         let body = size_of::<Pose>() + size_of::<PlacedBody>() + 2 * size_of::<usize>();
         self.stage(
             "cluster",
@@ -411,12 +370,12 @@ impl Sizes {
                 ("candidates", self.candidates()),
                 ("clusters", body as u64 * self.poses),
                 ("scorers", self.scorers()),
-                ("threads", self.threads(at_once)),
+                ("threads", self.threads(rotations)),
             ],
         )
     }
 
-    fn score(&self, at_once: AtOnce) -> MemoryStage {
+    fn score(&self, rotations: usize) -> MemoryStage {
         // Cluster of each pose, whether it is distinct, and of each cluster size, weight, centre and place.
         let clusters = 10 * size_of::<usize>() as u64 * self.poses;
         let row = (size_of::<RankedPose>() + size_of::<usize>()) as u64;
@@ -428,7 +387,7 @@ impl Sizes {
                 // Sorting takes half of them again.
                 ("rows", row * self.poses * 3 / 2),
                 ("scorers", self.scorers()),
-                ("threads", self.threads(at_once)),
+                ("threads", self.threads(rotations)),
             ],
         )
     }

@@ -7,8 +7,10 @@ use std::path::{Path, PathBuf};
 use knotdock_structures::molecule::InputSpec;
 use serde::{Deserialize, Serialize};
 
+use crate::dock::memory::size::in_words;
 use crate::output::files::checksum::{sha256, sha256_of_file};
 use crate::output::files::whole_file::is_stream;
+use crate::plain_path::plain_path;
 
 /// An input file as recorded: what to read and how to know it again.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -66,6 +68,7 @@ impl InputRecord {
     /// Records a file that holds these bytes.
     pub fn new(input: &InputSpec, bytes: &[u8]) -> Self {
         let path = std::path::absolute(&input.path).unwrap_or_else(|_| input.path.clone());
+        let path = plain_path(&path);
         Self {
             // JSON holds no bytes that are not Unicode: such a path is recorded for people, not to be found again.
             path: PathBuf::from(path.to_string_lossy().into_owned()),
@@ -141,8 +144,8 @@ const MAX_INPUT: u64 = 4 << 30;
 /// SHA-256 of a file, in hexadecimal.
 fn sha256_of(path: &Path) -> io::Result<String> {
     if fs::metadata(path)?.len() > MAX_INPUT {
-        let message =
-            format!("it has more than {MAX_INPUT} bytes, the most that are read of an input");
+        let most = in_words(MAX_INPUT);
+        let message = format!("it has more than {most}, the most that are read of an input");
         return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
     }
     sha256_of_file(path)

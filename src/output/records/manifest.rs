@@ -74,7 +74,7 @@ pub struct Results {
 pub struct EffectTime {
     /// The effect.
     pub effect: Effect,
-    /// CPU milliseconds a rotation, over all stages of the search loop.
+    /// Its part of the milliseconds of a rotation; the parts of all effects add up to the whole.
     pub milliseconds_per_rotation: f64,
 }
 

@@ -90,7 +90,7 @@ pub fn write_rows(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Resu
 }
 
 /// Columns of the table of pairs.
-const PAIRS: [&str; 11] = [
+const PAIRS: [&str; 12] = [
     "file",
     "model",
     "chain_1",

@@ -51,8 +51,12 @@ function axes({ left, right, top, bottom }, x, y, [xs, ys], [xName, yName]) {
 /** Points that can be chosen. `points`: x, y, row, rank. */
 function scatter(root, points, [xName, yName], chosen, choose) {
   const box = { left: 58, right: 510, top: 10, bottom: 270 };
-  const [xLow, xHigh] = span([0, ...points.map((point) => point.x)]);
-  const [yLow, yHigh] = span(points.map((point) => point.y));
+  const [left, xHigh] = span([0, ...points.map((point) => point.x)]);
+  const [least, most] = span(points.map((point) => point.y));
+  // No dot lies over an axis or beyond the chart: the largest has a radius of 6 of the 260 that the chart is high.
+  const room = 0.03 * (most - least);
+  const [yLow, yHigh] = [least - room, most + room];
+  const xLow = left - 0.015 * (xHigh - left);
   const x = (value) => box.left + (value - xLow) / (xHigh - xLow) * (box.right - box.left);
   const y = (value) => box.bottom - (value - yLow) / (yHigh - yLow) * (box.bottom - box.top);
   const drawn = [...points].sort((one, other) => (one.row === chosen) - (other.row === chosen));

@@ -23,9 +23,7 @@ pub(super) const EFFECT: EffectDefinition = EffectDefinition {
     lacks: |inputs| {
         let mut roles = inputs.roles.into_iter().flatten();
         let all_free = roles.all(|role| *role == ResidueRole::Free);
-        all_free.then(|| {
-            "no residue is blocked or active, and no antibody is kept to its CDRs".to_owned()
-        })
+        all_free.then(|| "no option names residues, and no antibody is kept to its CDRs".to_owned())
     },
     reason: |inputs| inputs.roles_reason.to_owned(),
     term: |[receptor, ligand], inputs, weight| {

@@ -43,6 +43,24 @@ fn instead_of_command(word: &str) -> Option<String> {
 /// What to do about a word that is not UTF-8.
 pub const UTF_8: &str = "rename the file, or link to it by a name in UTF-8";
 
+/// What to do about one file that `knotdock dock` gets: a ring of copies needs no other.
+fn instead_of_ligand(error: &clap::Error) -> Option<String> {
+    let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else {
+        return None;
+    };
+    let Some(ContextValue::StyledStr(usage)) = error.get(ContextKind::Usage) else {
+        return None;
+    };
+    let is_ligand = missing.iter().any(|name| name.contains("LIGAND"))
+        && !missing.iter().any(|name| name.contains("RECEPTOR"));
+    let is_dock = usage.to_string().contains("knotdock dock");
+    (is_ligand && is_dock).then(|| {
+        "give the molecule that moves as the second file, or `--symmetry C2` (C3, D2 ...) for a ring of copies of the \
+         first"
+            .to_owned()
+    })
+}
+
 /// What to do about an error of the command line, where the field's word for something is at fault or one that is
 /// spelled alike.
 pub fn suggested(error: &clap::Error) -> Option<String> {
@@ -64,12 +82,20 @@ pub fn suggested(error: &clap::Error) -> Option<String> {
             .or_else(|| alike(ContextKind::SuggestedSubcommand)),
         ErrorKind::InvalidValue => alike(ContextKind::SuggestedValue),
         ErrorKind::InvalidUtf8 => Some(UTF_8.to_owned()),
+        ErrorKind::MissingRequiredArgument => instead_of_ligand(error),
         _ => None,
     }
 }
 
 /// The error with the field's word explained, in place of what is spelled alike.
 pub fn explained(mut error: clap::Error) -> clap::Error {
+    if let Some(instead) = suggested(&error)
+        && error.kind() == ErrorKind::MissingRequiredArgument
+    {
+        let tips = vec![StyledStr::from(instead)];
+        error.insert(ContextKind::Suggested, ContextValue::StyledStrs(tips));
+        return error;
+    }
     type Instead = fn(&str) -> Option<String>;
     let (find, kind): (Instead, _) = match error.kind() {
         ErrorKind::UnknownArgument => (instead_of_option, ContextKind::InvalidArg),
