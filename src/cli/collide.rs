@@ -410,7 +410,7 @@ fn impact_text(impact: &Impact, band: f64) -> String {
             };
             let sharper = if band > 0.0 {
                 format!(
-                    ". In between the gap is below {}, which the balls leave open; a finer --grid narrows it",
+                    ". At the first time the gap is below {}, which the balls leave open; a finer --grid narrows it",
                     Figure(band)
                 )
             } else {

@@ -3,7 +3,7 @@
 //! Body B moves along geodesics from pose to pose, one unit of time each. While the outer balls are apart, B may go on
 //! for as long as no point of it moves farther than that. The time at which their gap is no longer above the tolerance
 //! is the last at which the path is known to be free. From there on the inner balls are followed in the same way, until
-//! some of them meet: by then the solids have met. In between, the solids are closer than the two eps.
+//! some of them meet: by then the solids have met. At the first time their gap is below the two eps.
 
 use knotdock_scoring::se3::Pose;
 
