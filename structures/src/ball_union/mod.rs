@@ -124,8 +124,8 @@ pub fn shared_volume(first: &[Ball], second: &[Ball]) -> Volume {
     sum
 }
 
-/// Planes that are sorted at once.
-const SORTED_AT_ONCE: usize = 8;
+/// Planes that are sorted at first; then twice as many each time.
+const SORTED_FIRST: usize = 8;
 /// Share of a volume from which its error is held against the volumes of both unions.
 const CLEAR: f64 = 1e-3;
 /// Rounding of one term of a cell's volume, in cubes of the ball's radius.
@@ -264,10 +264,10 @@ impl Cuts {
                 .then_with(|| by_axis(2))
         };
         let mut any = false;
-        let mut rest = &mut self.planes[..];
+        let (mut rest, mut sorted) = (&mut self.planes[..], SORTED_FIRST);
         while !rest.is_empty() && !cell.is_empty() {
             let reach = cell.reach();
-            let count = SORTED_AT_ONCE.min(rest.len());
+            let count = sorted.min(rest.len());
             if count < rest.len() {
                 rest.select_nth_unstable_by(count - 1, order);
             }
@@ -280,6 +280,7 @@ impl Cuts {
                 any |= cell.cut(plane);
             }
             rest = later;
+            sorted *= 2;
         }
         any
     }
