@@ -480,7 +480,6 @@ fn messages_name_units_and_remedies() {
         &with(&["--rotations", "1deg"]),
         "an angle of at least 1.07 degrees",
     );
-    says(&with(&["--budget", "5"]), "write 5s, 5min or 5h");
     let memory = with(&["--memory", "10M"]);
     says(&memory, "MB of memory, and 10 MB are allowed");
     let config = with(&["--config", "missing.toml"]);

@@ -204,7 +204,11 @@ fn what_cannot_be_used_is_refused() {
     for (options, line, said) in [
         ("--interface-receptor p.csv", 3, "the probability is `1.5`"),
         ("--interface-ligand p.csv", 2, "there is no residue A:57"),
-        ("--interface-receptor bfactor", 0, "the B values run from"),
+        (
+            "--interface-receptor bfactor",
+            0,
+            "the B values of 223 of 223",
+        ),
         ("--interface-receptor none.csv", 0, "cannot be read"),
         ("--membrane receptor", 0, "marks no flat membrane"),
         ("--membrane=3,2", 0, "lowest and highest z"),

@@ -124,7 +124,7 @@ class DockOptions(TypedDict, total=False):
 
     interface_weight: float | str
     """Score of a residue in contact for each nat by which its log-odds to be in the interface exceed those of
-    the mean: score per nat; 0 leaves the term out [default: 60]"""
+    the mean: score per nat; 0 leaves the term out [default: 5]"""
 
     membrane_weight: float | str
     """Cost of each Å by which a pose lies in the membrane: score per Å; 0 leaves the term out [default: 50]"""
@@ -294,7 +294,7 @@ class DockArguments(DockOptions, total=False):
     """A further conformation of the ligand."""
     accuracy: float
     """Take the cheapest setting whose error is expected to be within this share of the best score."""
-    budget: str
+    budget: str | float
     """End within a time, such as `5s`."""
     force: bool
     """Replace the run in the directory, once the new one is done."""

@@ -148,7 +148,7 @@ def test_correlations_state_their_error_and_refuse_what_they_cannot_keep(balls):
     # Half of the resolution is 2.25.
     with pytest.raises(ValueError, match=r"spacing of 2.25"):
         knotdock.Correlator(*balls, spacing=4.0)
-    with pytest.raises(ValueError, match="memory"):
+    with pytest.raises(ValueError, match="coarser spacing"):
         knotdock.Correlator(*balls, spacing=0.02)
     # A second difference of the kernel, to 1e-14 of itself: less than double precision holds.
     with pytest.raises(ValueError, match="best score"):

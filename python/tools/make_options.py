@@ -58,7 +58,7 @@ class DockArguments(DockOptions, total=False):
     """A further conformation of the ligand."""
     accuracy: float
     """Take the cheapest setting whose error is expected to be within this share of the best score."""
-    budget: str
+    budget: str | float
     """End within a time, such as `5s`."""
     force: bool
     """Replace the run in the directory, once the new one is done."""

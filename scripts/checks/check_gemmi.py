@@ -140,14 +140,17 @@ def theirs(path):
     if len(structure) == 0:
         return None, "no model"
     is_pdb = structure.input_format == gemmi.CoorFormat.Pdb
+    # Segids are the chains of a file without any.
+    by_segid = is_pdb and not any(chain.name.strip() for model in structure for chain in model)
     rows = []
     for chain in structure[0]:
         for residue in chain:
+            named = residue.segment.strip() if by_segid else chain.name
             number, code = residue.seqid.num, residue.seqid.icode.strip()
             for atom in residue:
                 altloc = atom.altloc.replace("\0", "").strip()
                 position = tuple(round(x, 3) for x in atom.pos.tolist())
-                name = place_of(residue.name, chain.name, is_pdb)
+                name = place_of(residue.name, named, is_pdb)
                 # Names are read in upper case.
                 key = (atom.name.upper(), altloc, name, number, code, position)
                 element = element_of(atom, residue)
@@ -159,7 +162,7 @@ def theirs(path):
                         atom.b_iso,
                         altloc,
                         residue.name,
-                        (chain.name, number, code),
+                        (named, number, code),
                         residue.name in WATERS,
                         element in ("H", "D"),
                     )

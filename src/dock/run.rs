@@ -416,7 +416,7 @@ fn sharpen(
 ) -> Option<SharpOutcome> {
     let inputs = plan.sharp_inputs()?;
     progress.stage("sharp", 1);
-    let optima = optima(&inputs, candidates, body);
+    let optima = optima(&inputs, candidates, body, plan.rotations);
     let finding = settle(candidates, &optima, plan.options.ranking.sharp, scorers);
     progress.advance(1);
     Some(SharpOutcome {

@@ -4,7 +4,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::PolarAtom;
 use knotdock_structures::molecule::{Atom, Molecule};
 use knotdock_structures::neighbours::{CellList, Member};
-use std::collections::{BTreeMap, BTreeSet};
+use std::collections::BTreeMap;
 
 use super::{CLASH, CONTACT, HYDROGEN_BOND, ResidueName, SALT_BRIDGE};
 
@@ -69,7 +69,6 @@ impl<'a> ContactFinder<'a> {
     pub fn contacts(&self, poses: &[Pose]) -> Vec<Contact> {
         let mut found: BTreeMap<[usize; 2], Contact> = BTreeMap::new();
         for pose in poses {
-            let (mut links, mut clashing) = (Vec::new(), [BTreeSet::new(), BTreeSet::new()]);
             for other in &self.moved {
                 let at = pose.apply(other.atom.position);
                 let relative = from(self.middle, at);
@@ -87,57 +86,25 @@ impl<'a> ContactFinder<'a> {
                         salt_bridge: false,
                     });
                     contact.distance = contact.distance.min(square.sqrt());
-                    if square < CLASH * CLASH && one.may_clash && other.may_clash {
-                        clashing[0].insert(one.place);
-                        clashing[1].insert(other.place);
-                    }
                     let between = from(one.atom.position, at);
-                    let is_bond = square <= HYDROGEN_BOND * HYDROGEN_BOND
-                        && one.polar.may_bond(&other.polar)
+                    let may_bond = (CLASH * CLASH..=HYDROGEN_BOND * HYDROGEN_BOND)
+                        .contains(&square)
+                        && one.polar.may_bond(&other.polar);
+                    if may_bond
                         && faces(one.polar.direction, between)
-                        && faces(direction.into(), between.map(|part| -part));
-                    let is_bridge =
-                        square <= SALT_BRIDGE * SALT_BRIDGE && one.sign * other.sign < 0;
-                    if is_bond || is_bridge {
-                        links.push(Link {
-                            residues,
-                            places: [one.place, other.place],
-                            distance: square.sqrt(),
-                            is_bond,
-                            is_bridge,
-                        });
+                        && faces(direction.into(), between.map(|part| -part))
+                    {
+                        let shortest = contact.hydrogen_bond_distance.unwrap_or(f64::INFINITY);
+                        contact.hydrogen_bonds += 1;
+                        contact.hydrogen_bond_distance = Some(shortest.min(square.sqrt()));
                     }
+                    contact.salt_bridge |=
+                        square <= SALT_BRIDGE * SALT_BRIDGE && one.sign * other.sign < 0;
                 });
-            }
-            for link in links {
-                let clashes = |side: usize| clashing[side].contains(&link.places[side]);
-                if clashes(0) || clashes(1) {
-                    continue;
-                }
-                let Some(contact) = found.get_mut(&link.residues) else {
-                    continue;
-                };
-                contact.salt_bridge |= link.is_bridge;
-                if link.is_bond {
-                    let shortest = contact.hydrogen_bond_distance.unwrap_or(f64::INFINITY);
-                    contact.hydrogen_bonds += 1;
-                    contact.hydrogen_bond_distance = Some(shortest.min(link.distance));
-                }
             }
         }
         found.into_values().collect()
     }
-}
-
-/// A hydrogen bond or a salt bridge, unless one of its atoms clashes.
-struct Link {
-    residues: [usize; 2],
-    /// Its atom of each side, by [`Site::place`].
-    places: [usize; 2],
-    /// Distance of the two, in Å.
-    distance: f64,
-    is_bond: bool,
-    is_bridge: bool,
 }
 
 /// Cells of the edge [`CONTACT`] that may hold something in contact with one of some points.
@@ -213,14 +180,10 @@ impl NearCells {
 /// An atom with what it may do.
 struct Site<'a> {
     residue: usize,
-    /// Its place among the atoms of its molecule.
-    place: usize,
     atom: &'a Atom,
     polar: PolarAtom,
     /// Sign of the charge that it may bring to a salt bridge.
     sign: i8,
-    /// Metals are nearer to the atoms that they bind.
-    may_clash: bool,
 }
 
 /// The heavy atoms of a molecule, and the names of the residues that they point to.
@@ -228,20 +191,17 @@ fn sites(molecule: &Molecule, ph: f64) -> (Vec<Site<'_>>, Vec<ResidueName>) {
     let (polar, labels) = (molecule.polar_atoms(), molecule.labels(ph));
     let (mut sites, mut names) = (Vec::new(), Vec::new());
     for (residue, atoms) in heavy_residues(molecule).into_iter().enumerate() {
-        for &place in &atoms {
-            let atom = &molecule.atoms[place];
-            let element = atom.element.as_str();
+        for &at in &atoms {
+            let atom = &molecule.atoms[at];
             sites.push(Site {
                 residue,
-                place,
                 atom,
-                polar: polar[place],
-                sign: match (element, labels.group_signs[place]) {
+                polar: polar[at],
+                sign: match (atom.element.as_str(), labels.group_signs[at]) {
                     ("N", 1) => 1,
                     ("O", -1) => -1,
                     _ => 0,
                 },
-                may_clash: matches!(element, "C" | "N" | "O" | "P" | "S" | "Se"),
             });
         }
         names.extend(

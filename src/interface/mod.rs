@@ -5,14 +5,12 @@
 //! - A complex is two molecules where they stand, side 0 and side 1. Lengths are in Å, areas in Å^2.
 //! - **Contact**: two residues with heavy atoms nearer than 5 Å (Méndez et al., Proteins 52 (2003) 51-67). Their distance
 //!   is that of the nearest heavy atoms.
-//! - **Hydrogen bond**: a donor and an acceptor within 3.5 Å (Baker & Hubbard, Prog. Biophys. Mol. Biol. 44 (1984)
+//! - **Hydrogen bond**: a donor and an acceptor 2.2 to 3.5 Å apart (Baker & Hubbard, Prog. Biophys. Mol. Biol. 44 (1984)
 //!   97-179), each on the side of the other that faces away from what it is bonded to. Files mostly lack hydrogens, so
 //!   that their angles cannot be judged.
 //! - **Salt bridge**: a nitrogen of a positive group within 4 Å of an oxygen of a negative one (Barlow & Thornton, J.
 //!   Mol. Biol. 168 (1983) 867-885), at most one for two residues. Groups are side chains and phosphates that carry a
 //!   charge in the electrostatic effect, and their atoms are those that share it: no bases, sugars, esters or termini.
-//! - **Clash**: two heavy atoms of the two sides, metals aside, nearer than 2.2 Å. Neither takes part in hydrogen bonds
-//!   or salt bridges.
 //! - **Shape complementarity**: Sc of Lawrence & Colman (J. Mol. Biol. 234 (1993) 946-950).
 //! - **Buried surface**: accessible area (probe of 1.4 Å) alone less that in the complex.
 
@@ -40,8 +38,8 @@ pub const CONTACT: f64 = 5.0;
 pub const HYDROGEN_BOND: f64 = 3.5;
 /// Largest distance between the charged atoms of a salt bridge, in Å.
 pub const SALT_BRIDGE: f64 = 4.0;
-/// Distance in Å below which two heavy atoms overlap. The shortest hydrogen bonds have 2.2 Å (Jeffrey, An Introduction to
-/// Hydrogen Bonding, 1997).
+/// Distance in Å below which a donor and an acceptor overlap: the shortest hydrogen bonds have 2.2 Å (Jeffrey, An
+/// Introduction to Hydrogen Bonding, 1997).
 pub const CLASH: f64 = 2.2;
 /// A residue as files name it.
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize)]

@@ -52,37 +52,35 @@ fn a_lysine_and_an_aspartate_hold_together() {
     let far = Interface::of([&lysine(-5.1), &aspartate], 7.0);
     assert!(far.pairs.is_empty() && far.residues == [0, 0]);
     // From behind: nearer to the carbon than to the oxygen.
-    let behind = Interface::of([&aspartate, &lysine(3.4)], 7.0);
+    let beyond = molecule(&[
+        ("CE", "LYS", 'A', 10, "C", [5.3, 0.0, 0.0]),
+        ("NZ", "LYS", 'A', 10, "N", [3.8, 0.0, 0.0]),
+    ]);
+    let behind = Interface::of([&aspartate, &beyond], 7.0);
     assert_eq!((behind.hydrogen_bonds, behind.salt_bridges), (0, 1));
 }
 
-/// A bond between atoms 1.4 Å apart was counted. Atoms nearer than any bond clash, and make no other bonds either;
-/// metals do not clash with what binds them.
+/// A bond between atoms 1.4 Å apart was counted; they overlap.
 #[test]
 fn clashes_are_no_bonds() {
-    let lysine = |x: f64| {
-        [
-            ("CE", "LYS", 'A', 10, "C", [x - 1.5, 0.0, 0.0]),
-            ("NZ", "LYS", 'A', 10, "N", [x, 0.0, 0.0]),
-        ]
-    };
     let aspartate = molecule(&[
         ("CG", "ASP", 'B', 7, "C", [1.25, 0.0, 0.0]),
         ("OD1", "ASP", 'B', 7, "O", [0.0, 0.0, 0.0]),
     ]);
-    let held = |first: &Molecule| {
-        let found = Interface::of([first, &aspartate], 7.0);
-        let bond = found.pairs[0].hydrogen_bond_distance;
-        (found.hydrogen_bonds, found.salt_bridges, bond)
-    };
-    assert_eq!(held(&molecule(&lysine(-1.4))), (0, 0, None));
-    let [carbon, nitrogen] = lysine(-2.9);
-    let near = |element: &'static str| {
-        let other = ("X", "UNL", 'A', 11, element, [0.0, 2.0, 0.0]);
-        molecule(&[carbon, nitrogen, other])
-    };
-    assert_eq!(held(&near("C")), (0, 0, None));
-    assert_eq!(held(&near("ZN")).0, 1);
+    for (x, bonds) in [(-1.4, 0), (-2.1, 0), (-2.3, 1)] {
+        let lysine = molecule(&[
+            ("CE", "LYS", 'A', 10, "C", [x - 1.5, 0.0, 0.0]),
+            ("NZ", "LYS", 'A', 10, "N", [x, 0.0, 0.0]),
+        ]);
+        let found = Interface::of([&lysine, &aspartate], 7.0);
+        assert_eq!(
+            (found.hydrogen_bonds, found.salt_bridges),
+            (bonds, 1),
+            "{x}"
+        );
+        let distance = found.pairs[0].hydrogen_bond_distance;
+        assert_eq!(distance.is_some(), bonds == 1);
+    }
 }
 
 /// ARG beside O6 of a guanine was a salt bridge, since the nucleotide has a charge: its phosphate has. So it was with

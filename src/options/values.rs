@@ -94,7 +94,7 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
     }
 }
 
-/// A time in seconds, from text such as `5s`, `2min` or `1h`: a bare number may be meant in any unit.
+/// A time in seconds, from text such as `5`, `5s`, `2min` or `1h`; a bare number is seconds, and a run says so.
 ///
 /// # Errors
 /// What is wrong with the text.
@@ -105,13 +105,7 @@ pub fn duration(text: &str) -> Result<f64, String> {
         .unwrap_or(text.len());
     let (number, unit) = text.split_at(end);
     let unit = match unit.trim() {
-        "s" => 1.0,
-        "" if !number.trim().is_empty() => {
-            let number = number.trim();
-            return Err(format!(
-                "`{number}` has no unit of time; write {number}s, {number}min or {number}h"
-            ));
-        }
+        "" | "s" => 1.0,
         "us" | "µs" => 1e-6,
         "ms" => 1e-3,
         "min" => 60.0,
@@ -142,7 +136,7 @@ pub fn not_negative(text: &str) -> Result<f64, String> {
 pub fn length(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(value) if value.abs() <= LARGEST_LENGTH => Ok(value + 0.0),
-        _ => Err("it must be a number from -1e30 to 1e30".to_owned()),
+        _ => Err("it must be a finite number from -1e30 to 1e30".to_owned()),
     }
 }
 
@@ -150,7 +144,7 @@ pub fn length(text: &str) -> Result<f64, String> {
 pub fn distance(text: &str) -> Result<f64, String> {
     match length(text) {
         Ok(value) if value >= 0.0 => Ok(value),
-        _ => Err("it must be a number from 0 to 1e30".to_owned()),
+        _ => Err("it must be a finite number from 0 to 1e30".to_owned()),
     }
 }
 
@@ -286,12 +280,12 @@ mod tests {
             ("1.5 min", 90.0),
             ("2h", 7200.0),
             ("1e2s", 100.0),
+            ("90", 90.0),
+            ("1e2", 100.0),
         ] {
             assert_eq!(duration(text), Ok(seconds), "{text}");
         }
-        // A bare number is minutes to some programs and seconds to others.
-        assert!(duration("5").unwrap_err().contains("write 5s, 5min or 5h"));
-        for text in ["", "90", "1e2", "s", "0s", "-5s", "5 parsecs", "inf", "nan"] {
+        for text in ["", "s", "0s", "-5s", "5 parsecs", "inf", "nan"] {
             assert!(duration(text).is_err(), "{text}");
         }
     }

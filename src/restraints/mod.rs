@@ -191,11 +191,7 @@ mod tests {
             let fault = |bytes: &[u8]| written(name, bytes).unwrap_err().fault;
             assert!(matches!(*fault(b"\xff\xfe"), RestraintFault::Unreadable(_)));
             let large = vec![b'\n'; MAX_RESTRAINTS as usize + 1];
-            assert!(
-                fault(&large)
-                    .to_string()
-                    .contains("more than 16777216 bytes")
-            );
+            assert!(fault(&large).to_string().contains("more than 16 MiB"));
         }
         assert_eq!(
             *written("a.tbl", b"! nothing\n").unwrap_err().fault,

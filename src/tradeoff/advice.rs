@@ -420,7 +420,7 @@ mod tests {
         assert!(!said.contains("--rotations 1"), "{said}");
         assert!(!said.contains("Where the error matters"), "{said}");
         assert!(
-            said.contains("differ by 3% in time, 5% in error and 1 rows"),
+            said.contains("differ by 2% in time, 5% in error and 1 rows"),
             "{said}"
         );
     }

@@ -326,7 +326,7 @@ fn binary_ply(little: bool) -> Vec<u8> {
 }
 
 const RUN: &str = r#"{
- "schema": 2, "program": "knotdock", "version": "0.1.0", "commit": "unknown", "cpu_features": "x86_64",
+ "schema": 3, "program": "knotdock", "version": "0.1.0", "commit": "unknown", "cpu_features": "x86_64",
  "inputs": {
   "receptor": {"path": "/a/receptor.pdb", "chains": ["A"], "sha256": "00", "atoms": 1, "report": {}},
   "ligand": {"path": "/a/ligand.pdb", "chains": null, "sha256": "00", "atoms": 1, "report": {}},
@@ -337,7 +337,7 @@ const RUN: &str = r#"{
   "sampling": {"sample_grid": "64^3", "sample_weights": null},
   "kernel": {"effects": "auto", "lambda": 9.0, "offset": 2.2, "alpha": 2.0, "resolution": 4.5, "pass_length": null, "spacing": null, "tolerance": 0.01},
   "terms": {"core_weight": 1.0, "electrostatics_weight": 24.0, "contact_weight": 2.0, "restraint_weight": 1.0, "contact_potential": null, "fine_contact_weight": 2.0, "fine_contact_potential": null, "atom_pair_weight": 1.0, "relaxed_weight": 3.0, "active_weight": 2000.0, "atom_pair_potential": null, "unresolved_weight": 3.0, "termini_weight": 2.0, "violation_weight": 400.0, "interface_weight": 60.0, "membrane_weight": 50.0, "ph": 7.0},
-  "restraints": {"antibody": "cdrs", "block_receptor": "A:2", "block_ligand": null, "active_receptor": null, "active_ligand": null, "restraints": null, "restraints_need": "100%", "crosslink": null, "interface_receptor": null, "interface_ligand": null, "membrane": null, "peptidase_weight": 500.0},
+  "restraints": {"antibody": "cdrs", "block_receptor": "A:2", "block_ligand": null, "active_receptor": null, "active_ligand": null, "restraints": null, "restraints_need": "100%", "tbl_bounds": "widened", "crosslink": null, "interface_receptor": null, "interface_ligand": null, "membrane": null, "peptidase_weight": 500.0},
   "search": {"rotations": 100, "fine_rotations": null, "fine_share": 0.05, "precision": "single", "engine": "cpu", "per_rotation": 3, "poses": 2000, "refine": null, "symmetry": null},
   "ranking": {"cluster_radius": 5.0, "no_cluster": false},
   "output": {"write_top": 10, "diagnostics": false},

@@ -12,8 +12,9 @@ use rayon::prelude::*;
 const PROBES: usize = 3;
 /// Best voxels of each.
 const BEST: usize = 50;
-/// Further voxels of each at which the exact sum is taken, evenly over the grid.
-const SWEPT: usize = 50;
+/// Further voxels of each at which the exact sum is taken: evenly over the grid, and as many over the tenth of it with the
+/// largest magnitudes, where bodies overlap and errors are largest.
+const SWEPT: usize = 100;
 
 /// Reference values for the comparison of ranks: the best voxels of a few rotations at full rank.
 pub(super) struct Probes<T> {
@@ -69,19 +70,33 @@ fn probe_rotation(set: &[UnitQuaternion<f64>], probe: usize) -> UnitQuaternion<f
 
 /// The best voxels of a grid, in any order.
 fn best_voxels<T: Real>(grid: &[T]) -> Vec<usize> {
-    // A grid has fewer voxels than 32 bits number.
-    let mut order: Vec<u32> = (0..grid.len() as u32).collect();
-    let count = BEST.min(order.len() - 1);
-    order.select_nth_unstable_by(count, |&a, &b| {
-        let value = |voxel: u32| grid[voxel as usize].wide();
-        let (first, second) = (value(a), value(b));
-        second.total_cmp(&first).then(a.cmp(&b))
-    });
-    order[..count].iter().map(|&voxel| voxel as usize).collect()
+    first_voxels(grid.len(), BEST, |voxel| grid[voxel].wide())
 }
 
-/// Largest error of an engine against the exact sum, over the best voxels of three rotations of `set` and a sweep
-/// through their grids. A share of the best exact score there; if nothing is rewarded, of the largest magnitude.
+/// Voxels of a grid at which the exact sum is taken, in any order.
+fn sampled_voxels<T: Real>(grid: &[T]) -> Vec<usize> {
+    let count = grid.len();
+    let mut voxels = best_voxels(grid);
+    voxels.extend((0..count).step_by(count.div_ceil(SWEPT)));
+    let overlap = first_voxels(count, count / 10, |voxel| grid[voxel].wide().abs());
+    voxels.extend(overlap.iter().step_by(overlap.len().div_ceil(SWEPT).max(1)));
+    voxels
+}
+
+/// The `first` of `count` voxels with the largest values, in any order; not all.
+fn first_voxels(count: usize, first: usize, value: impl Fn(usize) -> f64) -> Vec<usize> {
+    // A grid has fewer voxels than 32 bits number.
+    let mut order: Vec<u32> = (0..count as u32).collect();
+    let first = first.min(count - 1);
+    order.select_nth_unstable_by(first, |&a, &b| {
+        let [left, right] = [a, b].map(|voxel| value(voxel as usize));
+        right.total_cmp(&left).then(a.cmp(&b))
+    });
+    order[..first].iter().map(|&voxel| voxel as usize).collect()
+}
+
+/// Largest error of an engine against the exact sum, over the best voxels of three rotations of `set` and sweeps through
+/// their grids. A share of the best exact score there; if nothing is rewarded, of the largest magnitude.
 pub(crate) fn measured_error<T: Real>(
     engine: &CpuEngine<T>,
     exact: &ExactScorer,
@@ -90,13 +105,11 @@ pub(crate) fn measured_error<T: Real>(
 ) -> f64 {
     let plan = engine.plan();
     let mut work = engine.workspace();
-    let mut scored: Vec<(f64, Pose)> = Vec::with_capacity(PROBES * (BEST + SWEPT + 1));
+    let mut scored: Vec<(f64, Pose)> = Vec::with_capacity(PROBES * (BEST + 2 * SWEPT));
     for probe in 0..PROBES {
         let rotation = probe_rotation(set, probe);
         engine.correlate(&rotation, &mut work);
-        let step = work.grid.len().div_ceil(SWEPT);
-        let voxels = best_voxels(&work.grid).into_iter();
-        for voxel in voxels.chain((0..work.grid.len()).step_by(step)) {
+        for voxel in sampled_voxels(&work.grid) {
             let place = plan.receptor_center() + engine.position_after(GridTurn::NONE, voxel);
             let pose = Pose::about(rotation, plan.ligand_center(), place);
             scored.push((work.grid[voxel].wide(), pose));

@@ -94,22 +94,20 @@ impl KernelOptions {
         [0.0, self.offset, 2.0 * self.offset]
     }
 
-    /// Largest reward and largest magnitude of B&I's own score of one pair, over pairs of the radius sums `sums` (Å) at
-    /// all distances; the reward is 0 if there is none.
+    /// Largest reward and largest magnitude of B&I's own score of a pair of the radius sum `sum` (Å) over distances; the
+    /// reward is 0 if there is none.
     ///
     /// # Errors
     /// [`KernelError`] on options that define no kernel.
-    pub(crate) fn extremes(&self, sums: [f64; 2]) -> Result<(f64, f64), KernelError> {
+    pub(crate) fn extremes(&self, sum: f64) -> Result<(f64, f64), KernelError> {
         let bump = self.check()?;
         let (weights, offsets) = (self.slice_weights(), self.slice_offsets());
         let (mut reward, mut largest) = (0.0f64, 0.0f64);
-        for sum in sums {
-            for step in 0..1000 {
-                let distance = (sum + offsets[2]) * f64::from(step) / 1000.0;
-                let slice = |i: usize| weights[i] * bump.value(distance / (sum + offsets[i]));
-                let score: f64 = (0..3).map(slice).sum();
-                (reward, largest) = (reward.max(score), largest.max(score.abs()));
-            }
+        for step in 0..1000 {
+            let distance = (sum + offsets[2]) * f64::from(step) / 1000.0;
+            let slice = |i: usize| weights[i] * bump.value(distance / (sum + offsets[i]));
+            let score: f64 = (0..3).map(slice).sum();
+            (reward, largest) = (reward.max(score), largest.max(score.abs()));
         }
         Ok((reward, largest))
     }

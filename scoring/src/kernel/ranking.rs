@@ -195,8 +195,10 @@ impl RankingKernel {
     /// score is what the low-pass rings to.
     pub(crate) fn rewards(&self) -> bool {
         let high = self.cone.high - 2.0 * self.options.offset;
-        let extremes = self.options.extremes([self.cone.low, high]);
-        extremes.is_ok_and(|(reward, _)| reward > 0.0)
+        [self.cone.low, high].into_iter().any(|sum| {
+            let extremes = self.options.extremes(sum);
+            extremes.is_ok_and(|(reward, _)| reward > 0.0)
+        })
     }
 
     /// Distance in Å beyond which the score kernel of such a table stays below `threshold` in magnitude.

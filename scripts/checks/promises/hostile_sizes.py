@@ -98,7 +98,7 @@ def nested(trial):
     if kind == "toml":
         trial.make("a.toml", "x = " + "[" * 200_000)
         return [*LIGAND[:3], "ligand.pdb", "-o", "run", "--config", "a.toml"]
-    trial.make("run.json", deep if kind == "json" else '{"program":"knotdock","schema":2,"options":' + deep)
+    trial.make("run.json", deep if kind == "json" else '{"program":"knotdock","schema":3,"options":' + deep)
     return ["dock", "--json", "--rerun", "run.json", "-o", "run"]
 
 

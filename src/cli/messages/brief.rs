@@ -66,6 +66,9 @@ fn unknown_text(labels: &LabelReport) -> Option<String> {
     (!names.is_empty()).then(|| names.join(", "))
 }
 
+/// Largest angle between rotations that anybody searches by, degrees.
+const LARGEST_ANGLE: usize = 30;
+
 /// How many rotations are searched, and the time and memory that the search is expected to take; of the CPU in
 /// `seconds`, where they are known.
 ///
@@ -80,8 +83,11 @@ pub fn expected_text(
     let mut text = format!("Searches {} {rotations}", plan.rotations);
     if plan.options.search.symmetry.is_none() {
         let angle = angle_of_rotations(plan.rotations);
-        text += &format!(", about {angle:.0} degrees apart");
-        let meant = rotations_of_angle(plan.rotations as f64).filter(|_| !is_angle);
+        if angle <= 180.0 {
+            text += &format!(", about {angle:.0} degrees apart");
+        }
+        let may_be_meant = !is_angle && plan.rotations <= LARGEST_ANGLE;
+        let meant = rotations_of_angle(plan.rotations as f64).filter(|_| may_be_meant);
         if let Some(count) = meant {
             text += &format!(" (--rotations {}deg would be {count})", plan.rotations);
         }
@@ -106,6 +112,9 @@ pub fn expected_text(
         );
         if let Some(error) = chosen.predicted_error {
             text += &format!(", for an error of {error:.1e}");
+        }
+        if let Some(seconds) = chosen.budget_seconds {
+            text += &format!("; ends within {}", time_text(seconds));
         }
     }
     text

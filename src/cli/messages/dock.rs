@@ -10,7 +10,6 @@ use crate::output::tables::restraints::most_met;
 use crate::priors::active_residues::AssumedSite;
 use crate::priors::restrained::Restrained;
 use crate::rank::sharp::SharpFinding;
-use crate::rank::sharp::evidence::MARGIN;
 use crate::tradeoff::choice::MIN_ROTATIONS;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Membrane;
@@ -122,9 +121,10 @@ fn sharp_text(outcome: &DockOutcome) -> Option<String> {
         SharpFinding::Requested => "no exact fit stands out; ranked by sharp fits, as requested",
         SharpFinding::NoExactFit => "no exact fit; ranked by the soft score",
     };
-    let margin = sharp
-        .margin
-        .map(|margin| format!(" (margin {margin:.1} standard deviations, {MARGIN:.1} needed)"));
+    let margin = sharp.evidence.map(|evidence| {
+        let (margin, needed) = (evidence.margin(), evidence.needed);
+        format!(" (margin {margin:.1} standard deviations, {needed:.1} needed)")
+    });
     Some(format!(
         "Sharp fits of {} in {:.2} s: {finding}{}",
         counted(sharp.poses, "pose"),

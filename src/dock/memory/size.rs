@@ -24,7 +24,7 @@ pub fn as_size(bytes: u64) -> String {
 
 /// A size in the unit that people use for it, to four digits: `87 MB`, or `512 MiB` where it is so many.
 pub fn in_words(bytes: u64) -> String {
-    let is_binary = bytes % NAMED_STEP != 0 && bytes % (1 << 20) == 0;
+    let is_binary = !bytes.is_multiple_of(NAMED_STEP) && bytes.is_multiple_of(1 << 20);
     let (step, units): (f64, [&str; 5]) = if is_binary {
         (1024.0, ["bytes", "KiB", "MiB", "GiB", "TiB"])
     } else {

@@ -187,18 +187,25 @@ fn align_sequences(first: &[&Residue], second: &[&Residue]) -> Alignment {
 
 /// Moves gaps that could stand elsewhere alike to where the superposed residues lie nearest each other.
 ///
-/// `pairs` are places in the two chains, `place` is where the backbone of a residue of the first comes to lie, relative to
-/// one of the second: the distance in Å. Gaps at which numbers or bonds decide stay. Returns whether any moved.
+/// `pairs` are places in the two chains, and `moved` superposes the first on the second. Gaps at which numbers or bonds
+/// decide stay. Returns whether any moved.
 pub(in crate::evaluate) fn settle(
     first: &[&Residue],
     second: &[&Residue],
     pairs: &mut [(usize, usize)],
     moved: impl Fn(Point3<f64>) -> Point3<f64>,
 ) -> bool {
-    let center = |residue: &Residue| residue.backbone.iter().flatten().next().copied();
+    // Mean square distance of the backbone atoms that both have.
     let distance = |(i, j): (usize, usize)| {
-        let ends = center(first[i]).map(&moved).zip(center(second[j]));
-        ends.map_or(f64::INFINITY, |(x, y)| nalgebra::distance(&x, &y))
+        let atoms = first[i].backbone.iter().zip(&second[j].backbone);
+        let both = atoms.filter_map(|(x, y)| (*x).zip(*y));
+        let squares: Vec<f64> = both
+            .map(|(x, y)| nalgebra::distance_squared(&moved(x), &y))
+            .collect();
+        match squares.len() {
+            0 => f64::INFINITY,
+            count => squares.iter().sum::<f64>() / count as f64,
+        }
     };
     // Whether a gap behind one residue of a chain shows as little as one behind the next.
     let alike = |chain: &[&Residue], at: usize, next: usize| {
@@ -372,8 +379,8 @@ mod tests {
         let user = read(chain_of("A", "WYWGGGCFYF", &(1..=10).collect::<Vec<_>>()));
         for missing in 4..=6 {
             let mut atoms = chain_of("A", "WYWGGGCFYF", &(1..=10).collect::<Vec<_>>());
-            // Alpha carbons alone, spread so that no step shows a bond.
-            atoms.retain(|atom| atom.residue_number != missing && atom.name == "CA");
+            // Oxygens alone show no bonds.
+            atoms.retain(|atom| atom.residue_number != missing && atom.name == "O");
             let native = read(atoms);
             let [ours, theirs] =
                 [&user, &native].map(|one| one.residues.iter().collect::<Vec<_>>());
@@ -394,7 +401,7 @@ mod tests {
     fn settle_all(ours: &[&Residue], theirs: &[&Residue], pairs: &mut [(usize, usize)]) {
         let mut numbered: Vec<Residue> = theirs.iter().map(|&one| one.clone()).collect();
         for (place, residue) in numbered.iter_mut().enumerate() {
-            // Numbers and distances that show nothing.
+            // Numbers that show nothing.
             residue.number = (3 * place as i64, None);
         }
         let theirs: Vec<&Residue> = numbered.iter().collect();

@@ -137,17 +137,12 @@ fn kinds(residues: &Residues) -> Vec<Kind<'_>> {
             .members
             .iter()
             .map(|&member| &residues.residues[member]);
-        let next = members.clone().skip(1).map(Some).chain([None]);
-        let kind = |(residue, next): (&'_ Residue, Option<&Residue>)| {
-            (residue.number, next.map(|next| step(residue, next)))
-        };
-        let kinds = members.zip(next);
-        kinds
-            .map(|(residue, next)| {
-                let (number, step) = kind((residue, next));
-                (residue.kind.as_str(), number, step)
-            })
-            .collect()
+        let following = members.clone().skip(1).map(Some).chain([None]);
+        let kinds = members.zip(following).map(|(residue, next)| {
+            let step = next.map(|next| step(residue, next));
+            (residue.kind.as_str(), residue.number, step)
+        });
+        kinds.collect()
     };
     residues.segments.iter().map(of_segment).collect()
 }

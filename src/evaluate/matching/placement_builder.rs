@@ -215,7 +215,8 @@ impl<'a> Builder<'a> {
         nalgebra::distance(&moved, &other) < radius + other_radius + reach(DISTINCTIVE)
     }
 
-    /// Gives chains that found nothing in their place the native's chain of their sequence that stands elsewhere.
+    /// Gives chains that found nothing in their place the native's chain of their sequence that is elsewhere. A chain that
+    /// found a part gets the rest if the whole then fits, or if the rest is of the same native chain (a domain that moved).
     fn add_elsewhere(&mut self) {
         for user in 0..self.user.segments.len() {
             let ours = self.free[0][user].clone();
@@ -251,7 +252,11 @@ impl<'a> Builder<'a> {
             let added = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
             let points = [self.points.as_slice(), &added].concat();
             let all = Superposition::new(&points);
-            if all.rmsd(&all.best) <= MAX_FIT_RMSD || pair.pairs.len() >= DISTINCTIVE {
+            let name = |native: usize| self.native.segments[native].chain();
+            let mut own = self.chains.iter().filter(|chain| chain.user == user);
+            let is_one_chain = own.all(|chain| name(chain.native) == name(pair.native));
+            let is_by_no_chance = is_one_chain && pair.pairs.len() >= DISTINCTIVE;
+            if all.rmsd(&all.best) <= MAX_FIT_RMSD || is_by_no_chance {
                 self.take(pair);
             }
         }

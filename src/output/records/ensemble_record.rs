@@ -18,7 +18,7 @@ pub const RECORD: &str = "ensemble.json";
 pub const MEMBERS: &str = "members";
 
 /// Number of the layout of `ensemble.json`; it rises when an entry changes its meaning or goes.
-pub const SCHEMA: u32 = 1;
+pub const SCHEMA: u32 = 2;
 
 /// A conformation of a side.
 #[derive(Clone, Debug, Serialize)]

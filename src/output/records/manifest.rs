@@ -27,7 +27,7 @@ use crate::tradeoff::choice::Chosen;
 use knotdock_scoring::terms::effect::Effect;
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
-pub const SCHEMA: u32 = 2;
+pub const SCHEMA: u32 = 3;
 
 /// An input with what its reader made of it.
 #[derive(Clone, Debug, Serialize)]

@@ -2,20 +2,23 @@
 //!
 //! Every place that a run tries has an optimum, and the energies of wrong places are alike: they are its background.
 //! The margin of the best place is how far it lies below the middle of the others, in standard deviations. These follow
-//! from the better half of the others without its best quarter: overlaps that are left spread the worse half, and copies
-//! of the best place in a symmetric partner lie in that quarter. All of them are means of many places, so that no single
+//! from the better half of the others: overlaps that are left spread the worse half. The best sixteenth is left out,
+//! because it holds copies of the best place in a symmetric partner. Both are means of many places, so that no single
 //! place moves the margin by much (docs/research/defaults.md, "Sharp fits").
 
 use serde::Serialize;
 
 /// Fewest other places that say anything.
 const FEWEST: usize = 16;
-/// Margin from which a fit is exact, standard deviations; from there on it scores.
-pub const MARGIN: f64 = 4.5;
+/// Margin from which a fit is exact after [`MANY`] rotations or more, standard deviations; from there on it scores.
+const MARGIN: f64 = 3.6;
+/// What fewer rotations add to it, for each power of ten: wrong fits have larger margins there (docs/research/defaults.md).
+const MARGIN_OF_FEW: f64 = 0.65;
+const MANY: usize = 3600;
 /// Margin from which fits score where this is requested, whether or not one stands out.
 pub(super) const REQUESTED: f64 = 2.0;
-/// Mean of a normal distribution between its first and third octile, standard deviations below its middle.
-const NORMAL: f64 = 0.6932;
+/// Mean of a normal distribution between its first and sixth sixteenth, standard deviations below its middle.
+const NORMAL: f64 = 0.8199;
 /// Least standard deviation of a background, RT: poses of a kind have none.
 const LEAST_DEVIATION: f64 = 1.0;
 /// Score of an RT below the energy at which fits begin to score. Exact fits lie up to 40 RT below it, and the soft scores
@@ -43,21 +46,25 @@ pub struct Evidence {
     pub middle: f64,
     /// Their standard deviation, RT.
     pub deviation: f64,
+    /// Margin from which a fit of this run is exact, standard deviations.
+    pub needed: f64,
 }
 
 impl Evidence {
-    /// Evidence by the energies of different places, best first; `None` where there are too few places.
-    pub fn of(energies: &[f64]) -> Option<Self> {
+    /// Evidence by the energies of different places, best first, of a search of so many rotations; `None` if there are
+    /// too few places.
+    pub fn of(energies: &[f64], rotations: usize) -> Option<Self> {
         let (best, others) = energies.split_first()?;
         if others.len() < FEWEST {
             return None;
         }
-        let middle = mean_between(others, [3, 5]);
-        let deviation = (middle - mean_between(others, [1, 3])) / NORMAL;
+        let middle = mean_between(others, [4, 12]);
+        let deviation = (middle - mean_between(others, [1, 6])) / NORMAL;
         Some(Self {
             best: *best,
             middle,
             deviation: deviation.max(LEAST_DEVIATION),
+            needed: MARGIN + MARGIN_OF_FEW * (MANY as f64 / rotations as f64).log10().max(0.0),
         })
     }
 
@@ -68,7 +75,7 @@ impl Evidence {
 
     /// Whether an exact fit stands out.
     pub fn stands_out(&self) -> bool {
-        self.margin() > MARGIN
+        self.margin() > self.needed
     }
 
     /// Energy of a place with a margin, RT.
@@ -77,9 +84,9 @@ impl Evidence {
     }
 }
 
-/// Mean of sorted values between two octiles.
-fn mean_between(sorted: &[f64], octiles: [usize; 2]) -> f64 {
-    let [from, to] = octiles.map(|octile| octile * sorted.len() / 8);
+/// Mean of sorted values between two sixteenths of them.
+fn mean_between(sorted: &[f64], sixteenths: [usize; 2]) -> f64 {
+    let [from, to] = sixteenths.map(|sixteenth| sixteenth * sorted.len() / 16);
     let between = sorted.get(from..to).unwrap_or_default();
     between.iter().sum::<f64>() / between.len().max(1) as f64
 }
@@ -115,7 +122,7 @@ mod tests {
 
     fn with(best: &[f64], others: impl Iterator<Item = f64>) -> Evidence {
         let energies: Vec<f64> = best.iter().copied().chain(others).collect();
-        Evidence::of(&energies).unwrap()
+        Evidence::of(&energies, MANY).unwrap()
     }
 
     #[test]
@@ -128,16 +135,19 @@ mod tests {
         );
         assert!((evidence.margin() - 6.0).abs() < 0.06);
         assert!((evidence.at_margin(evidence.margin()) + 74.0).abs() < 1e-9);
-        assert!(evidence.stands_out() && !with(&[-67.0], background()).stands_out());
+        assert!(evidence.stands_out() && !with(&[-64.0], background()).stands_out());
+        let of = |rotations| Evidence::of(&[-50.0; 40], rotations).unwrap().needed;
+        assert_eq!([of(3600), of(100_000)], [MARGIN; 2]);
+        assert!((of(360) - MARGIN - MARGIN_OF_FEW).abs() < 1e-12);
     }
 
     /// Copies of one place have no spread, and few places no background.
     #[test]
     fn few_or_equal_places_prove_nothing() {
-        assert_eq!(Evidence::of(&[-50.0; FEWEST]), None);
-        assert_eq!(Evidence::of(&[]), None);
+        assert_eq!(Evidence::of(&[-50.0; FEWEST], MANY), None);
+        assert_eq!(Evidence::of(&[], MANY), None);
         assert!(!with(&[-51.0], [-50.0; FEWEST].into_iter()).stands_out());
-        assert!(Evidence::of(&[-50.0; 40]).unwrap().margin().is_finite());
+        assert!(with(&[-50.0], [-50.0; 39].into_iter()).margin().is_finite());
     }
 
     /// Neither how bad the worst places are nor copies of the best one say much, and a place more or less hardly

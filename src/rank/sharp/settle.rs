@@ -1,7 +1,7 @@
 //! Poses put into their optima, if a run is ranked by sharp fits.
 
 use super::SharpPose;
-use super::evidence::{MARGIN, REQUESTED, SCORE_PER_RT, SharpFinding};
+use super::evidence::{REQUESTED, SCORE_PER_RT, SharpFinding};
 use super::stage::Optima;
 use crate::options::SharpChoice;
 use crate::rank::candidates::Candidate;
@@ -25,7 +25,9 @@ pub(crate) fn settle(
     };
     let begins = optima.evidence.and_then(|evidence| match choice {
         SharpChoice::On => Some(evidence.at_margin(REQUESTED)),
-        _ => evidence.stands_out().then(|| evidence.at_margin(MARGIN)),
+        _ => evidence
+            .stands_out()
+            .then(|| evidence.at_margin(evidence.needed)),
     });
     candidates
         .par_iter_mut()

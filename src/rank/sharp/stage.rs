@@ -31,8 +31,13 @@ pub(crate) struct Optima {
     pub evidence: Option<Evidence>,
 }
 
-/// Lets the best candidates descend, and looks about the places of the best optima.
-pub(crate) fn optima(inputs: &SharpInputs, candidates: &[Candidate], body: &RigidBody) -> Optima {
+/// Lets the best candidates of a search of so many rotations descend, and looks about the places of the best optima.
+pub(crate) fn optima(
+    inputs: &SharpInputs,
+    candidates: &[Candidate],
+    body: &RigidBody,
+    rotations: usize,
+) -> Optima {
     let fit = SharpFit::new(inputs.bodies, inputs.polar);
     let best = candidates.get(..DESCENDING).unwrap_or(candidates);
     let mut of_candidates: Vec<Option<Optimum>> = Vec::new();
@@ -62,7 +67,7 @@ pub(crate) fn optima(inputs: &SharpInputs, candidates: &[Candidate], body: &Rigi
         .map(|(_, optimum)| optimum.energy.total())
         .collect();
     Optima {
-        evidence: Evidence::of(&energies),
+        evidence: Evidence::of(&energies, rotations),
         of_candidates,
     }
 }

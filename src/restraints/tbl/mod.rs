@@ -13,7 +13,7 @@
 //! - `or` with two selections adds an alternative, which counts towards the same effective distance.
 //! - A statement that is within one molecule, or may be by one of its alternatives, is left out: rigid docking keeps
 //!   its distance.
-//! - The upper bound is widened for the hydrogens that are not read ([`hydrogens`]), unless the caller wants it as
+//! - The upper bound is widened for the hydrogens that are not read (`hydrogens`), unless the caller wants it as
 //!   written.
 //! - What ARIA writes behind the distances (`peak`, `volume`, `ppm1` ...) is passed over. A `weight` must be 1.
 //! - `segid` and `chain` are the chain. `resid 52A` has an insertion code. Case counts in names of chains where a chain

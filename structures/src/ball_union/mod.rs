@@ -1,7 +1,7 @@
 //! Volumes of unions of balls, and of what two such unions share.
 //!
 //! Each ball of a union owns the points for which its power, |x - c|^2 - r^2, is the least: its cell of the power
-//! diagram, a convex polyhedron. The union is the sum of the balls' parts in their own cells ([`cell`]), so volumes are
+//! diagram, a convex polyhedron. The union is the sum of the balls' parts in their own cells (`cell`), so volumes are
 //! exact but for rounding (Edelsbrunner, "The union of balls and its dual shape", Discrete Comput. Geom. 13, 1995).
 //!
 //! Two unions share what cells lose: V(A) + V(B) - V(A or B), ball by ball. Balls that do not meet the other union

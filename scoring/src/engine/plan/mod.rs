@@ -271,12 +271,16 @@ impl Plan {
         let radii = Radii::of(receptor, ligand);
         let (least, widest) = radii.sums();
         // With a penalty beyond the usual the largest |G| grows by lambda^2 and the best score, the measure of errors,
-        // by lambda. Balls much larger than their skin earn less, too: their bumps are soft in proportion.
+        // by lambda. Balls much larger than their skin earn less, too: their bumps are soft in proportion. How far sums
+        // over pairs cancel (lambda near 1) no pair shows: a correlator measures that.
         let of_penalty = options.kernel.lambda.abs() / 20.0;
-        let of_pairs = match options.kernel.extremes([least, widest])? {
-            (reward, largest) if reward > 0.0 && of_product.is_none() => largest / (20.0 * reward),
-            _ => 0.0,
-        };
+        let mut of_pairs = 0.0f64;
+        for sum in [least, widest] {
+            let (reward, largest) = options.kernel.extremes(sum)?;
+            if reward > 0.0 && of_product.is_none() {
+                of_pairs = of_pairs.max(largest / (20.0 * reward));
+            }
+        }
         let dynamic_range = of_penalty.max(of_pairs).clamp(1.0, WIDEST_RANGE);
         // A longer window leaks less past the stop frequency; the shortest serves docking (1e-2).
         let reach_factor = 1.15 + 0.75 * (1e-2 * dynamic_range / kernel_tolerance).log10().max(0.0);

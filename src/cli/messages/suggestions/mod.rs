@@ -53,7 +53,7 @@ fn instead_of_ligand(error: &clap::Error) -> Option<String> {
     };
     let is_ligand = missing.iter().any(|name| name.contains("LIGAND"))
         && !missing.iter().any(|name| name.contains("RECEPTOR"));
-    let is_dock = usage.to_string().contains("knotdock dock");
+    let is_dock = usage.to_string().contains(" dock ");
     (is_ligand && is_dock).then(|| {
         "give the molecule that moves as the second file, or `--symmetry C2` (C3, D2 ...) for a ring of copies of the \
          first"

@@ -151,9 +151,10 @@ mod tests {
                 for names in &mut plain.chains {
                     names.iter_mut().for_each(|name| *name = words.next().unwrap());
                 }
+                let (complex, plain) = ([complex], [plain]);
                 for write in [pymol::script, chimerax::script] {
                     let marks = |text: String| text.replace(|c: char| c.is_ascii_alphanumeric(), "");
-                    prop_assert_eq!(marks(write(&[complex.clone()])), marks(write(&[plain.clone()])));
+                    prop_assert_eq!(marks(write(&complex)), marks(write(&plain)));
                 }
             }
         });

@@ -131,9 +131,12 @@ fn ideal_hydrogens(atom: &Atom, molecule: &Molecule) -> Vec<Vector3<f64>> {
     places.collect()
 }
 
+/// Number and insertion code.
+type ResidueNumber = (i64, Option<char>);
+
 /// A molecule of the example in its complex: positions of its heavy atoms, then of their hydrogens, and the residue of
 /// each.
-fn with_hydrogens(name: &str) -> (Vec<[f64; 3]>, Vec<(i64, Option<char>)>, usize) {
+fn with_hydrogens(name: &str) -> (Vec<[f64; 3]>, Vec<ResidueNumber>, usize) {
     let path = format!(
         "{}/structures/examples/1ppe_{name}_bound.pdb",
         env!("CARGO_MANIFEST_DIR")
