@@ -200,7 +200,10 @@ fn a_stopped_ensemble_goes_on() {
     fs::remove_dir_all(directory.join("members/r1_l2")).unwrap();
     run(folder.path(), &format!("{command} --threads 1"));
     assert_eq!(comparable(&directory), whole);
-    // Done once, it is not replaced unless that is requested, and then nothing has to be docked.
+    let record: Value =
+        serde_json::from_slice(&fs::read(directory.join("ensemble.json")).unwrap()).unwrap();
+    assert_eq!(record["timing"]["members_kept"], 1);
+    // Done once, it is not replaced unless that is requested.
     let again = |more: &str| {
         let words = format!("{command} {more}");
         cargo_bin_cmd!("knotdock")
@@ -212,9 +215,23 @@ fn a_stopped_ensemble_goes_on() {
     assert_eq!(again("").status.code(), Some(2));
     assert!(again("--force").status.success());
     assert_eq!(comparable(&directory), whole);
-    let record: Value =
-        serde_json::from_slice(&fs::read(directory.join("ensemble.json")).unwrap()).unwrap();
-    assert_eq!(record["timing"]["members_kept"], 2);
+    // One with a file of the user's is not, wherever that is, done or begun.
+    let notes = directory.join("members/r1_l2/notes.txt");
+    fs::write(&notes, "mine").unwrap();
+    let refused = again("--force");
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr).into_owned();
+    assert!(said.contains("members/r1_l2/notes.txt"), "{said}");
+    fs::remove_file(&notes).unwrap();
+    assert_eq!(comparable(&directory), whole);
+    fs::remove_file(directory.join("ensemble.json")).unwrap();
+    fs::write(directory.join("notes.txt"), "mine").unwrap();
+    let begun = files(&directory);
+    for force in ["", "--force"] {
+        let refused = again(force);
+        assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+        assert!(files(&directory) == begun, "{force}");
+    }
 }
 
 /// One model of a file is an ordinary run, and its record repeats it.
@@ -330,10 +347,13 @@ fn what_is_no_ensemble_is_refused() {
         folder.path(),
         &format!("dock receptor.pdb models.pdb --ligand-models all {SHORT} -o run"),
     );
-    for command in [
-        "dock receptor.pdb ligand.pdb --force -o run",
-        "refine run --ranks 1",
-        "dock --rerun run/ensemble.json -o again",
+    for (command, expected) in [
+        (
+            "dock receptor.pdb ligand.pdb --force -o run",
+            "holds no run of knotdock",
+        ),
+        ("refine run --ranks 1", "ensemble"),
+        ("dock --rerun run/ensemble.json -o again", "ensemble"),
     ] {
         let output = cargo_bin_cmd!("knotdock")
             .current_dir(folder.path())
@@ -342,6 +362,6 @@ fn what_is_no_ensemble_is_refused() {
             .unwrap();
         assert_eq!(output.status.code(), Some(2), "{command}");
         let said = String::from_utf8_lossy(&output.stderr).into_owned();
-        assert!(said.contains("ensemble"), "{said}");
+        assert!(said.contains(expected), "{said}");
     }
 }

@@ -88,28 +88,30 @@ fn a_report_holds_what_the_tables_hold() {
     }
 }
 
-/// A report goes with its run, unless someone has changed it; it is refused or replaced as other files of a user are.
+/// A report goes with its run, unless someone has changed it: then neither it nor the run is replaced unasked.
 #[test]
-fn a_changed_report_is_kept() {
+fn a_changed_report_stays() {
     let folder = place();
     let dock = format!("dock receptor.pdb ligand.pdb {SMALL} -o run");
     run(folder.path(), &dock);
-    let directory = folder.path().join("run");
-    let report = directory.join("report.html");
+    let report = folder.path().join("run/report.html");
     let written = fs::read_to_string(&report).unwrap();
     // Not a request to anywhere, in spite of what is in it.
     assert!(written.contains("default-src 'none'") && !written.contains("src=\"http"));
     run(folder.path(), &format!("{dock} --force --no-report"));
     assert!(!report.exists());
-    assert!(!directory.join("report.kept.html").exists());
+    // One that was added is the run's own, too.
+    run(folder.path(), "report run");
     run(folder.path(), "report run");
     fs::write(&report, written.replace("Summary", "My notes")).unwrap();
     let said = refused(folder.path(), ["report", "run"]).to_string();
     assert!(said.contains("was changed"), "{said}");
-    run(folder.path(), &format!("{dock} --force"));
-    let kept = fs::read_to_string(directory.join("report.kept.html")).unwrap();
-    assert!(kept.contains("My notes"));
+    let said = refused(folder.path(), format!("{dock} --force").split(' ')).to_string();
+    assert!(said.contains("report.html"), "{said}");
+    assert!(fs::read_to_string(&report).unwrap().contains("My notes"));
+    run(folder.path(), "report run --force");
     assert!(fs::read_to_string(&report).unwrap().contains("Summary"));
+    run(folder.path(), &format!("{dock} --force"));
 }
 
 /// What a report needs and does not find is named.

@@ -51,17 +51,13 @@ def dock(
 
     Further keywords are options of the command line, `native` and `force` among them, and:
     """
-    temporary = None
-    if output is None:
-        temporary = tempfile.TemporaryDirectory(prefix="knotdock-")
-        directory = pathlib.Path(temporary.name, "run")
-    else:
-        directory = pathlib.Path(output)
+    temporary = tempfile.TemporaryDirectory(prefix="knotdock-")
+    directory = pathlib.Path(temporary.name, "run") if output is None else pathlib.Path(output)
+    inputs = pathlib.Path(temporary.name, "inputs")
 
     def folder() -> pathlib.Path:
-        # Beside run.json inputs are found again, wherever the directory is moved.
-        directory.mkdir(parents=True, exist_ok=True)
-        return directory
+        inputs.mkdir(exist_ok=True)
+        return inputs
 
     arguments = [given(receptor, folder, "receptor")]
     if ligand is not None:
@@ -71,7 +67,10 @@ def dock(
         if words.get(name) is not None:
             words[name] = given(words[name], folder, name)
     run_command("dock", *arguments, output=directory, progress=progress, **words)
-    return Run(directory, _temporary=temporary)
+    if inputs.exists():
+        # Beside run.json inputs are found again, wherever the directory is moved.
+        _knotdock.add(directory, sorted(inputs.iterdir()))
+    return Run(directory, _temporary=temporary if output is None else None)
 
 
 def _describe() -> None:

@@ -170,24 +170,26 @@ def _shard(
     remove: bool,
 ) -> tuple[int, int]:
     """One task: docks a shard, and writes its tables as Parquet; pairs that were docked and that failed."""
-    table, output, shard = where
+    table, directory, shard = where
     index, number = shard.split("/")
     name = f"{int(index):04}-of-{int(number):04}"
-    place = pathlib.Path(output)
+    place = pathlib.Path(directory)
     parts = {kind: place / kind / f"part-{name}.parquet" for kind in ("results", "poses")}
     if not all(part.exists() for part in parts.values()):
+        # A batch has a directory of its own.
+        output = place / "batch"
         batch(table, output, keep="table", shard=shard, dock=dock, progress=False, **settings)
-        folder = place / "shards" / name
-        for kind, file in (("poses", "poses.csv.gz"), ("results", "results.csv")):
-            _to_parquet(folder / file, parts[kind])
+        folder = output / "shards" / name
+        _to_parquet(folder / "poses.csv.gz", parts["poses"])
+        _to_parquet(folder / "results.csv", parts["results"], (int(index), int(number)))
         if remove:
             shutil.rmtree(folder)
     status = _statuses(parts["results"])
     return status.count("done"), status.count("failed")
 
 
-def _to_parquet(table: pathlib.Path, part: pathlib.Path) -> None:
-    """A table of a shard as Parquet, whole or not at all."""
+def _to_parquet(table: pathlib.Path, part: pathlib.Path, shard: tuple[int, int] | None = None) -> None:
+    """A table of a shard as Parquet, whole or not at all; with `shard` it has a row a pair, and gets their rows' numbers."""
     import pyarrow as pa
     import pyarrow.csv as csv
     import pyarrow.parquet as parquet
@@ -201,10 +203,10 @@ def _to_parquet(table: pathlib.Path, part: pathlib.Path) -> None:
         if name in _TEXTS:
             cells = [cell and unquoted(cell) for cell in found.column(name).to_pylist()]
             found = found.set_column(place, name, pa.array(cells, pa.string()))
-    if "row" in names:
-        # A pair that failed and was docked afterwards has two rows.
-        last = {row: place for place, row in enumerate(found.column("row").to_pylist())}
-        found = found.take([last[row] for row in sorted(last)])
+    if shard:
+        first, step = shard
+        rows = range(first, first + step * found.num_rows, step)
+        found = found.add_column(0, "row", pa.array(rows, pa.int64()))
     handle, path = tempfile.mkstemp(dir=part.parent, prefix=".part-")
     os.close(handle)
     try:

@@ -3,6 +3,7 @@
 
 use std::ffi::OsString;
 use std::fmt;
+use std::path::PathBuf;
 use std::sync::Arc;
 use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
@@ -11,12 +12,19 @@ use std::thread::Builder;
 use std::time::Duration;
 
 use knotdock::cli::{Failure, Listener};
+use knotdock::output::files::added::add_files;
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 use knotdock::progress::Ended;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
 use crate::failure::{exception, fault};
+
+/// Adds files to a run: its inputs, which are found again beside its record.
+#[pyfunction]
+pub fn add(py: Python<'_>, run: PathBuf, files: Vec<PathBuf>) -> PyResult<()> {
+    add_files(&run, &files).map_err(|error| exception(py, &Failure::from(error)))
+}
 
 /// Time between two looks at signals and at what the command has said.
 const LOOK: Duration = Duration::from_millis(50);

@@ -19,7 +19,7 @@ static ALLOCATOR: knotdock::system_limits::ReportingAllocator =
 #[pymodule]
 mod _knotdock {
     #[pymodule_export]
-    use super::command::{call, main, version};
+    use super::command::{add, call, main, version};
     #[pymodule_export]
     use super::correlator::Correlator;
     #[pymodule_export]

@@ -80,11 +80,13 @@ def test_a_run_is_saved_opened_and_evaluated(helices, options, tmp_path):
 def test_a_file_of_the_user_s_stays(helices, options, tmp_path):
     text = pathlib.Path(helices[0]).read_text()
     (tmp_path / "receptor.pdb").write_text("mine")
-    with pytest.raises(knotdock.InputError, match="another content"):
+    with pytest.raises(knotdock.InputError, match="not empty"):
         knotdock.dock(text, helices[1], output=tmp_path, **options)
     assert (tmp_path / "receptor.pdb").read_text() == "mine"
-    (tmp_path / "receptor.pdb").write_text(text)
-    assert len(knotdock.dock(text, helices[1], output=tmp_path, **options).scores)
+    run = knotdock.dock(text, helices[1], output=tmp_path / "run", **options)
+    assert (tmp_path / "run/receptor.pdb").read_text() == text
+    assert run.complex(2).startswith("REMARK")
+    assert len(knotdock.dock(text, helices[1], output=tmp_path / "run", force=True, **options).scores)
 
 
 def test_errors_have_their_parts(helices, tmp_path):

@@ -5,7 +5,7 @@
     scripts/checks/trust.py target/release/knotdock --only kills --trial 17 --keep FOLDER     one trial again
 
 Each trial runs the program in a folder of its own, on inputs that its seed fixes. promises/__init__.py lists the
-promises, one function each. The short form is for continuous integration and takes up to 90 seconds, the full one up
+promises, one function each. The short form is for continuous integration and takes about 20 seconds, the full one up
 to 20 minutes: trials of all promises go in turn, and on a slow machine fewer of them are done. A failure is printed
 with the calls that led to it and the command that repeats it.
 
@@ -155,13 +155,13 @@ def write_into_page(path, table):
 def read_arguments():
     parser = argparse.ArgumentParser(description=__doc__.split("\n")[0])
     parser.add_argument("knotdock", help="the program")
-    parser.add_argument("--short", action="store_true", help="few trials, under 90 seconds")
+    parser.add_argument("--short", action="store_true", help="few trials, in about 20 seconds")
     parser.add_argument("--seed", type=int, default=1, help="other inputs; default: %(default)s")
     parser.add_argument("--only", help="promises to test, with commas between their names")
     parser.add_argument("--trial", type=int, help="this trial alone")
     parser.add_argument("--keep", help="with --trial: a new folder for it, which stays")
     parser.add_argument("--jobs", type=int, default=os.cpu_count(), help="trials at once; default: %(default)s")
-    parser.add_argument("--minutes", type=float, help="no trial starts later; default: 17, short 1.2")
+    parser.add_argument("--minutes", type=float, help="no trial starts later; default: 17, short 0.3")
     parser.add_argument("--write", type=Path, help="page that gets the table between its markers")
     parser.add_argument("--json", type=Path, help="file for the table as JSON")
     parser.add_argument("--csv", type=Path, help="file for the table as CSV")
@@ -192,7 +192,7 @@ def main():
             numbers = range(promise.short if options.short else promise.full)
             chosen.append((place, numbers if options.trial is None else [options.trial]))
     began = time.monotonic()
-    minutes = options.minutes or (1.2 if options.short else 17)
+    minutes = options.minutes or (0.3 if options.short else 17)
     rows, left_out = run_trials(settings, chosen, options.jobs, minutes)
     for row in rows:
         print(f"{row.name}: {row.trials} trials, {row.failures} failures, {row.seconds:.0f} s {row.skipped}")

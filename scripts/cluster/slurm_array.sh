@@ -19,7 +19,7 @@ if [ "$#" -lt 3 ]; then
 fi
 shards=$1 pairs=$2 directory=$3
 shift 3
-# With --scratch on a disk of the node the shared disk sees one rename a shard; then what a task did is lost with its
-# node.
+# With --scratch on a disk of the node the shared disk gets a shard's files at the end; what a killed task did is on its
+# node alone then.
 exec knotdock batch "$pairs" -o "$directory" --shard "$SLURM_ARRAY_TASK_ID/$shards" --keep table --failures-ok \
     -j "${SLURM_CPUS_PER_TASK:-1}" -- "$@"

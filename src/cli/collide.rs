@@ -132,7 +132,7 @@ impl Collide {
         };
         let viewer = self.viewer.read()?;
         let solids = self.read()?;
-        self.check_output(&solids)?;
+        self.check_output(&solids, console)?;
         for (side, solid) in ["A", "B"].iter().zip(&solids) {
             solid.describe(side, console);
         }
@@ -188,7 +188,7 @@ impl Collide {
         Ok([first, second])
     }
 
-    fn check_output(&self, solids: &[SolidInput; 2]) -> Result<(), Failure> {
+    fn check_output(&self, solids: &[SolidInput; 2], console: Console) -> Result<(), Failure> {
         let read: Vec<&Path> = solids
             .iter()
             .map(SolidInput::path)
@@ -203,7 +203,7 @@ impl Collide {
                 .remedy("give each output file its own name"));
         }
         for file in [&self.output, &self.report].into_iter().flatten() {
-            check_output(file, read.iter().copied(), self.force)?;
+            check_output(file, read.iter().copied(), self.force, console)?;
         }
         Ok(())
     }

@@ -1,6 +1,5 @@
 //! `knotdock completions` and `knotdock man`: what shells and `man` know of the command line, from its definition.
 
-use std::io::Write;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
@@ -10,7 +9,7 @@ use serde_json::json;
 
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::output::files::whole_file::FileError;
+use crate::output::files::whole_file::{FileError, write_whole};
 
 /// Print the completions of a shell.
 ///
@@ -50,10 +49,7 @@ impl ManPages {
     /// Writes them, of the command line `command`.
     pub fn run(self, command: Command, console: Console) -> Result<(), Failure> {
         let directory = &self.directory;
-        let unwritable = |source| FileError::Unwritable {
-            path: directory.clone(),
-            source,
-        };
+        let unwritable = |source| FileError::unwritable(directory, source);
         std::fs::create_dir_all(directory).map_err(unwritable)?;
         let mut command = shown_in_full(command.disable_help_subcommand(true));
         command.build();
@@ -84,11 +80,7 @@ fn write_page(command: &Command, directory: &Path, pages: &mut Vec<String>) -> R
         .map_err(Failure::other)?;
     let page = String::from_utf8(page).map_err(Failure::other)?;
     let page = page.replace(".SH EXTRA", ".SH EXAMPLES");
-    let written = std::fs::File::create(&path).and_then(|mut file| file.write_all(page.as_bytes()));
-    written.map_err(|source| FileError::Unwritable {
-        path: path.clone(),
-        source,
-    })?;
+    write_whole(&path, |file| file.write_all(page.as_bytes()))?;
     pages.push(path.display().to_string());
     for below in command.get_subcommands() {
         write_page(below, directory, pages)?;

@@ -137,12 +137,12 @@ impl Prepared {
     /// Whether the directory holds the results already.
     pub fn is_done(&self, console: Console) -> bool {
         match self {
-            Self::Run(docking) => docking.is_done(console),
+            Self::Run(docking) => docking.is_done(),
             Self::Ensemble(ensemble) => ensemble.is_done(console),
         }
     }
 
-    /// Docks, and writes what comes of it; the JSON object. What became of files of the user's is said on `notices`.
+    /// Docks, and writes what comes of it; the JSON object. What ended commands left there is said on `notices`.
     pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
         match self {
             Self::Run(docking) => docking.run(console, notices),

@@ -6,9 +6,9 @@ use crate::dock::outcome::DockOutcome;
 use crate::dock::pair::PreparedPair;
 use crate::dock::run::dock_until;
 use crate::error::SearchError;
-use crate::output::files::exported::ExportFolder;
+use crate::output::files::added::Addition;
 use crate::output::files::seal::REPORT;
-use crate::output::files::staging::Staging;
+use crate::output::files::staging::{RUN, Stage, Staging};
 use crate::output::files::viewers::{CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol};
 use crate::output::records::manifest::{Machine, Manifest, ManifestParts, Results};
 use crate::output::shards::WIDE_COLUMNS;
@@ -33,15 +33,16 @@ use crate::cli::messages::dock::{
     error_warning, few_rotations_warning, outcome_text, restraints_warning,
 };
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::warn_set_aside;
+use crate::cli::messages::leftovers::warn_leftovers;
 use crate::cli::messages::timings::timings_text;
 
 impl Docking {
-    /// Docks, and writes the run; its JSON object. What became of files of the user's is said on `notices`, for a batch
-    /// says that and nothing else of its pairs.
+    /// Docks, and writes the run; its JSON object. What ended commands left there is said on `notices`, for a batch says
+    /// that and nothing else of its pairs.
     pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
-        let staging = Staging::open(&self.directory, self.force)?;
-        self.dock(console)?.save(staging, console, notices)
+        let staging = Staging::open(RUN, &self.directory, self.force)?;
+        warn_leftovers(&staging.leftovers, notices);
+        self.dock(console)?.save(staging, console)
     }
 
     /// Docks, and writes nothing.
@@ -130,10 +131,10 @@ impl Docked {
         let top = rows
             .get(..request.options.output.write_top)
             .unwrap_or(&rows);
-        let export = ExportFolder::open(folder, folder)?;
-        let place = (export.staged(), None);
+        let addition = Addition::open(folder, None)?;
+        let place = (addition.stage().folder(), None);
         request.bodies.write(top, request.arrangement(), place)?;
-        Ok(export.place(false)?)
+        Ok(addition.place(false)?)
     }
 
     /// Rank and pose of each row.
@@ -141,15 +142,10 @@ impl Docked {
         pose_rows(&self.outcome.poses)
     }
 
-    /// Writes the run; its JSON object. What became of files of the user's is said on `notices`.
-    pub fn save(
-        &self,
-        staging: Staging,
-        console: Console,
-        notices: Console,
-    ) -> Result<Value, Failure> {
-        let written = self.write(&staging)?;
-        warn_set_aside(&staging.commit()?, notices);
+    /// Writes the run; its JSON object.
+    pub fn save(&self, staging: Staging, console: Console) -> Result<Value, Failure> {
+        let written = self.write(staging.stage())?;
+        staging.commit()?;
         self.report(console);
         let directory = &self.docking.directory;
         let top = directory.join("top");
@@ -165,7 +161,7 @@ impl Docked {
     }
 
     /// Writes the table, the complexes and the record of a run into its staging folder.
-    fn write(&self, staging: &Staging) -> Result<Written, Failure> {
+    fn write(&self, staging: &Stage) -> Result<Written, Failure> {
         let (docking, outcome) = (&self.docking, &self.outcome);
         let Docking {
             request,
@@ -234,7 +230,7 @@ impl Docked {
                 options: &request.options,
                 table: &shown,
                 bodies: request.bodies.shown(contacts.as_ref()),
-                directory: &docking.directory.display().to_string(),
+                directory: &docking.shown.display().to_string(),
             };
             let text = report.text(Viewer::embedded());
             staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
@@ -287,7 +283,7 @@ impl Docked {
 }
 
 /// Writes the scripts that show complexes in other programs, if there are any.
-pub fn write_scripts(staging: &Staging, complexes: &[ViewedComplex]) -> Result<(), Failure> {
+pub fn write_scripts(staging: &Stage, complexes: &[ViewedComplex]) -> Result<(), Failure> {
     if !complexes.is_empty() {
         staging.write(PYMOL, |file| write_pymol(file, complexes))?;
         staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;

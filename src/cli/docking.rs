@@ -8,6 +8,7 @@ use crate::dock::outcome::DockOutcome;
 use crate::dock::pair::{PreparedPair, Preparer};
 use crate::dock::plan::DockPlan;
 use crate::options::{Precision, SharpChoice};
+use crate::output::files::staging::put_back;
 use crate::output::records::manifest::{EffectTime, Timing};
 use crate::output::records::recorded_run::RecordedRun;
 use crate::search::deadline::Deadline;
@@ -21,12 +22,13 @@ use crate::cli::messages::brief::{expected_text, score_text};
 use crate::cli::messages::console::Console;
 use crate::cli::messages::dock::{assumed, regions_text};
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::finish_before_reading;
 
 /// A run that is ready to go.
 pub struct Docking {
     pub(super) request: Request,
     pub(super) directory: PathBuf,
+    /// What its report calls the directory.
+    pub(super) shown: PathBuf,
     /// Whether another run there is replaced.
     pub(super) force: bool,
     pub(super) known: Option<Known>,
@@ -94,6 +96,7 @@ impl Docking {
         ));
         Ok(Self {
             request,
+            shown: directory.clone(),
             directory,
             force,
             known,
@@ -122,8 +125,8 @@ impl Docking {
 
     /// Whether the directory holds this very run already: of this program, with inputs of the same content and the
     /// same options.
-    pub fn is_done(&self, console: Console) -> bool {
-        if finish_before_reading(&self.directory, console).is_err() {
+    pub fn is_done(&self) -> bool {
+        if put_back(&self.directory).is_err() {
             return false;
         }
         let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {

@@ -5,9 +5,10 @@ use std::path::{Path, PathBuf};
 
 use crate::dock::pair::Pair;
 use crate::options::Threads;
+use crate::output::files::added::Addition;
 use crate::output::files::complexes::file_names;
-use crate::output::files::exported::ExportFolder;
 use crate::output::files::model_file::{PosedPair, model_file_name, write_model_file};
+use crate::output::files::staging::put_back;
 use crate::output::records::ensemble_record::is_ensemble;
 use crate::output::records::recorded_run::RecordedRun;
 use crate::output::tables::poses::{PoseRow, PoseTable};
@@ -24,7 +25,7 @@ use crate::cli::inputs::bodies::Bodies;
 use crate::cli::inputs::ranked_rows::ranked_places;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::finish_before_reading;
+use crate::cli::messages::leftovers::warn_leftovers;
 
 /// Write complexes (or assemblies of meshes) of chosen ranks of a run, receptor and placed ligand in one file.
 #[derive(Args, Debug)]
@@ -68,16 +69,17 @@ impl Export {
 
     /// Writes them on the threads of the caller.
     fn export(self, console: Console) -> Result<(), Failure> {
-        finish_before_reading(&self.run, console)?;
+        put_back(&self.run)?;
         let own = self.run.join("top");
         let folder = self.output.clone().unwrap_or(own);
         let exports = self.exports(&folder)?;
-        let export = ExportFolder::open(&folder, &self.run)?;
+        let export = Addition::open(&folder, Some(&self.run))?;
+        warn_leftovers(&export.leftovers, console);
         if self.format == Some(ExportFormat::Ensemble) {
             let pairs = exports.iter().map(Placed::pairs);
             let mut pairs: Vec<PosedPair> = pairs.collect::<Result<Vec<_>, _>>()?.concat();
             pairs.sort_by_key(|pair| self.place(pair.row.rank));
-            let name = write_model_file(&pairs, export.staged())?;
+            let name = write_model_file(&pairs, export.stage().folder())?;
             export.place(self.force)?;
             let path = folder.join(name).display().to_string();
             console.say(&path);
@@ -95,7 +97,7 @@ impl Export {
             arrangement,
         } in &exports
         {
-            let of_run = bodies.write(rows, *arrangement, (export.staged(), format))?;
+            let of_run = bodies.write(rows, *arrangement, (export.stage().folder(), format))?;
             let names = rows.iter().zip(of_run.names);
             written.extend(names.map(|(row, name)| (row.rank, name, of_run.chains.clone())));
         }

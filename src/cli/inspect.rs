@@ -57,7 +57,7 @@ impl Inspect {
         let reading = options.input.reading();
         let ph = options.terms.ph;
         let structure = InputSpec::parse(&self.file)?.path;
-        let format = self.checked_outputs(&structure)?;
+        let format = self.checked_outputs(&structure, console)?;
         let (input, fates) = if self.atoms.is_some() {
             let (input, fates) = Input::read_with_fates(&self.file, &reading)?;
             (input, Some(fates))
@@ -97,14 +97,18 @@ impl Inspect {
     }
 
     /// Refuses files to write that are there or coincide; returns the format of `--write`.
-    fn checked_outputs(&self, structure: &Path) -> Result<Option<Format>, Failure> {
+    fn checked_outputs(
+        &self,
+        structure: &Path,
+        console: Console,
+    ) -> Result<Option<Format>, Failure> {
         if let Some(file) = &self.atoms {
-            check_output(file, [structure], self.force)?;
+            check_output(file, [structure], self.force, console)?;
         }
         let Some(file) = &self.write else {
             return Ok(None);
         };
-        check_output(file, [structure], self.force)?;
+        check_output(file, [structure], self.force, console)?;
         if self
             .atoms
             .as_ref()

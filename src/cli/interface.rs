@@ -56,7 +56,7 @@ impl InterfaceCommand {
         let (files, sides) = files_and_chains(&self.words, "interface")?;
         let read: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
         for file in [&self.output, &self.contacts].into_iter().flatten() {
-            check_output(file, read.iter().map(PathBuf::as_path), self.force)?;
+            check_output(file, read.iter().map(PathBuf::as_path), self.force, console)?;
         }
         let (files, reading) = ((files, sides.as_ref()), options.input.reading());
         let (rows, code) = for_each_model(files, &reading, console, |file, sides| {

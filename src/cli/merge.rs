@@ -9,6 +9,7 @@ use serde_json::json;
 
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::leftovers::warn_leftovers;
 
 /// Put the shards of a batch together, in the order of its table of pairs.
 ///
@@ -24,6 +25,9 @@ pub struct Merge {
     /// Merge what there is where shards are missing or not done.
     #[arg(long)]
     partial: bool,
+    /// Replace tables of an earlier merge that differ.
+    #[arg(long)]
+    force: bool,
 }
 
 impl Merge {
@@ -44,7 +48,9 @@ impl Merge {
             counts: [pairs, done, failed],
             results,
             poses,
-        } = merge(&self.directories, &out, self.partial)?;
+            leftovers,
+        } = merge(&self.directories, &out, (self.partial, self.force))?;
+        warn_leftovers(&leftovers, console);
         let path = |path: PathBuf| path.display().to_string();
         let (results, poses) = (path(results), poses.map(path));
         let beside = poses.as_ref().map(|poses| format!(" and {poses}"));

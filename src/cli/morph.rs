@@ -187,7 +187,7 @@ impl Morph {
             .collect::<Result<_, _>>()?;
         let mut read: Vec<&Path> = inputs.iter().map(SolidInput::path).collect();
         read.extend(operation.pose_file());
-        common.output.check(&read, allowed)?;
+        common.output.check(&read, allowed, console)?;
         for (side, solid) in ["A", "B"].iter().zip(&inputs) {
             solid.describe(side, console);
         }

@@ -102,7 +102,7 @@ impl Obstacle {
         let first = SolidInput::read(&self.first, &self.solids, allowed)?;
         let second = SolidInput::read(&self.second, &self.solids, allowed)?;
         let read = [first.path(), second.path()];
-        self.output.check(&read, allowed)?;
+        self.output.check(&read, allowed, console)?;
         for (side, solid) in [("A", &first), ("B", &second)] {
             solid.describe(side, console);
         }

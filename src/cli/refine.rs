@@ -1,13 +1,14 @@
 //! `knotdock refine`: chosen poses of a finished run, refined at atomic resolution.
 
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::options::Threads;
 use crate::options::values::not_negative;
+use crate::output::files::added::Addition;
 use crate::output::files::complexes::file_names;
-use crate::output::files::exported::{ExportError, ExportFolder};
-use crate::output::files::whole_file::write_whole;
+use crate::output::files::staging::put_back;
 use crate::output::records::recorded_run::RecordedRun;
 use crate::output::tables::poses::{PoseRow, PoseTable};
 use crate::output::tables::refined;
@@ -26,7 +27,7 @@ use crate::cli::inputs::molecules::Input;
 use crate::cli::inputs::ranked_rows::ranked_rows;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::finish_before_reading;
+use crate::cli::messages::leftovers::warn_leftovers;
 use crate::cli::refining::{Known, Refining, Written};
 
 /// Refine chosen poses of a run at atomic resolution: the ligand moves, and side chains of the interface are packed.
@@ -73,7 +74,7 @@ impl Refine {
     /// Refines on the threads of the caller.
     fn refine(self, console: Console) -> Result<(), Failure> {
         let start = Instant::now();
-        finish_before_reading(&self.run, console)?;
+        put_back(&self.run)?;
         let run_path = self.run.join("run.json");
         let run = RecordedRun::read(&run_path)?;
         refuse_ring(&run, &run_path)?;
@@ -104,16 +105,13 @@ impl Refine {
             side_chains: !self.no_side_chains,
             ph: run.options.terms.ph,
         };
-        let export = ExportFolder::open(&folder, &self.run)?;
-        let refining = Refining::new(pair, options, known.as_ref(), export.staged())?;
+        let export = Addition::open(&folder, Some(&self.run))?;
+        warn_leftovers(&export.leftovers, console);
+        let refining = Refining::new(pair, options, known.as_ref(), export.stage().folder())?;
         let written = refining.all(&rows, console)?;
-        write_whole(&export.staged().join(TABLE), |file| {
-            refined::write_to(file, &written.table)
-        })?;
-        export.place(self.force).map_err(|error| match error {
-            ExportError::Changed(path) => held(&path, "otherwise, or edited since"),
-            error => error.into(),
-        })?;
+        let table = |file: &mut dyn Write| refined::write_to(file, &written.table);
+        export.stage().write(TABLE, table)?;
+        export.place(self.force)?;
         let seconds = start.elapsed().as_secs_f64();
         report(&written, known.as_ref(), &folder, seconds, console)
     }

@@ -4,9 +4,9 @@ use std::path::{Path, PathBuf};
 
 use crate::bounded_read::{MAX_RECORD, read_bounded_file};
 use crate::options::Threads;
+use crate::output::files::added::Addition;
 use crate::output::files::seal::{REPORT, is_sealed};
-use crate::output::files::staging::Staging;
-use crate::output::files::whole_file::write_whole;
+use crate::output::files::staging::{Stage, is_run, put_back};
 use crate::output::records::recorded_run::{RecordedRun, RecordedRunError};
 use crate::output::tables::poses::PoseTable;
 use crate::report::{Listed, RunReport, Viewer};
@@ -18,7 +18,7 @@ use crate::cli::arguments::viewer::ViewerArguments;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::finish_before_reading;
+use crate::cli::messages::leftovers::warn_leftovers;
 
 /// Write report.html of runs, batches, ensembles and sweeps: results as a table, in three dimensions and in charts.
 ///
@@ -48,7 +48,7 @@ impl Report {
         let viewer = self.viewer.read()?;
         let mut written: Vec<String> = Vec::new();
         for run in &self.runs {
-            finish_before_reading(run, console)?;
+            put_back(run)?;
             let path = run.join(REPORT);
             if path.symlink_metadata().is_ok() && !is_sealed(&path) && !self.force {
                 return Err(
@@ -58,7 +58,7 @@ impl Report {
                 );
             }
             let text = page(run, viewer.as_ref())?;
-            write_whole(&path, |file| file.write_all(text.as_bytes()))?;
+            warn_leftovers(&place(run, &text, self.force)?, console);
             console.say(path.display().to_string());
             written.push(path.display().to_string());
         }
@@ -67,7 +67,7 @@ impl Report {
 }
 
 /// Writes the report of an ensemble or a sweep beside its other files, which are staged for a directory.
-pub fn stage_listed(listed: Listed, directory: &Path, staging: &Staging) -> Result<(), Failure> {
+pub fn stage_listed(listed: Listed, directory: &Path, staging: &Stage) -> Result<(), Failure> {
     let name = directory.display().to_string();
     let text = listed.report(directory, staging.folder(), &name)?;
     Ok(staging.write(REPORT, |file| file.write_all(text.as_bytes()))?)
@@ -83,9 +83,18 @@ pub fn write_listed(directory: &Path, console: Console) -> Result<(), Failure> {
         ));
         return Ok(());
     }
-    let text = page(directory, None)?;
-    write_whole(&path, |file| file.write_all(text.as_bytes()))?;
+    warn_leftovers(&place(directory, &page(directory, None)?, true)?, console);
     Ok(())
+}
+
+/// Writes a report into a directory; what ended commands left there.
+fn place(directory: &Path, text: &str, force: bool) -> Result<Vec<PathBuf>, Failure> {
+    let addition = Addition::open(directory, is_run(directory).then_some(directory))?;
+    let leftovers = addition.leftovers.clone();
+    let stage = addition.stage();
+    stage.write(REPORT, |file| file.write_all(text.as_bytes()))?;
+    addition.place(force)?;
+    Ok(leftovers)
 }
 
 /// The page of a directory.

@@ -90,14 +90,19 @@ impl PoseOutput {
         Ok(())
     }
 
-    fn check(&self, count: usize) -> Result<(), Failure> {
+    fn check(&self, count: usize, console: Console) -> Result<(), Failure> {
         if count > MAX_POSES {
             return Err(
                 Failure::input(format!("{count} poses are more than {MAX_POSES}"))
                     .remedy(format!("take at most {MAX_POSES}")),
             );
         }
-        check_output(&self.output, std::iter::empty::<&Path>(), self.force)
+        check_output(
+            &self.output,
+            std::iter::empty::<&Path>(),
+            self.force,
+            console,
+        )
     }
 }
 
@@ -121,7 +126,7 @@ impl Se3 {
                 steps,
                 output,
             } => {
-                output.check(*steps)?;
+                output.check(*steps, console)?;
                 let [p, q] = [pose(first)?, pose(second)?];
                 let poses = path(&p, &q, *steps);
                 output.write(&poses, console)?;
@@ -137,7 +142,7 @@ impl Se3 {
                 count,
                 output,
             } => {
-                output.check(*count)?;
+                output.check(*count, console)?;
                 let poses = geodesic_ball(&pose(center)?, *radius, *count);
                 output.write(&poses, console)?;
                 console.result(&json!({

@@ -5,8 +5,7 @@ use std::path::PathBuf;
 use crate::dock::pair::PairError;
 use crate::options::EngineChoice;
 use crate::options::definition::Scope;
-use crate::output::files::product::TRADEOFF;
-use crate::output::files::staging::Staging;
+use crate::output::files::staging::{Staging, TRADEOFF};
 use crate::output::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
 use crate::output::tables::report::align;
 use crate::progress::{Ended, Progress};
@@ -24,7 +23,7 @@ use crate::cli::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
 use crate::cli::inputs::request::{Known, Request};
 use crate::cli::messages::console::{Console, ProgressLine};
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::warn_set_aside;
+use crate::cli::messages::leftovers::warn_leftovers;
 use crate::cli::report::stage_listed;
 
 /// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
@@ -91,7 +90,9 @@ impl TradeoffCommand {
         console.say(format!("\nThe default: {}\n", first.plan));
         let machine = machine(&first.plan);
         let inputs = request.inputs(first.sampling.as_deref())?;
-        let staging = Staging::of(&TRADEOFF, &directory, self.force)?;
+        let opened = Staging::open(TRADEOFF, &directory, self.force)?;
+        warn_leftovers(&opened.leftovers, console);
+        let staging = opened.stage();
         let progress = SweepConsole {
             line: console.progress(),
             console,
@@ -122,8 +123,8 @@ impl TradeoffCommand {
         })
         .map_err(Failure::other)?;
         staging.write("tradeoff.json", |file| record.write_to(file))?;
-        stage_listed(Listed::Tradeoff, &directory, &staging)?;
-        warn_set_aside(&staging.commit()?, console);
+        stage_listed(Listed::Tradeoff, &directory, staging)?;
+        opened.commit()?;
 
         console.say(format!("\n{}", table(&tradeoff)));
         if let Some(advice) = &advice {

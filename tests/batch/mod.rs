@@ -1,9 +1,10 @@
 //! Many pairs in one call: what each leaves, what a failure costs, and what a second call does again.
 
+mod hostile;
 mod shards;
 mod together;
 
-use knotdock::output::files::folder_lock::FolderLock;
+use knotdock::output::files::lock::Lock;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
@@ -175,11 +176,11 @@ fn a_failure_costs_no_other_pair_and_a_second_call_only_what_is_left() {
 #[test]
 fn a_known_complex_is_measured_against() {
     let folder = place();
-    write_pairs(
-        folder.path(),
-        "name,receptor,ligand,native_receptor,native_ligand,active_receptor\n\
-         a,helices_receptor.pdb,helices_ligand.pdb,helices_receptor.pdb,helices_ligand.pdb,A:5\n",
-    );
+    let native = folder.path().join("in/native.pdb");
+    fs::copy(folder.path().join("in/helices_ligand.pdb"), &native).unwrap();
+    let table = "name,receptor,ligand,native_receptor,native_ligand,active_receptor\n\
+                 a,helices_receptor.pdb,helices_ligand.pdb,helices_receptor.pdb,native.pdb,A:5\n";
+    write_pairs(folder.path(), table);
     let output = batch(
         folder.path(),
         &format!("batch in/pairs.csv -o out --json {OPTIONS} --rotations 48"),
@@ -209,23 +210,21 @@ fn a_known_complex_is_measured_against() {
     // Another known complex is another run, and so is a table of poses that is gone.
     let again = format!("batch in/pairs.csv -o out {OPTIONS} --rotations 48");
     assert!(batch(folder.path(), &again).status.success());
-    let native = folder.path().join("in/charged_helices_ligand.pdb");
-    let table = fs::read_to_string(folder.path().join("in/pairs.csv")).unwrap();
-    fs::copy(folder.path().join("in/helices_ligand.pdb"), &native).unwrap();
-    let same = table.replace(
-        "pdb,helices_ligand.pdb,A",
-        "pdb,charged_helices_ligand.pdb,A",
+    // A table that names another one is another batch, whatever that file holds.
+    write_pairs(
+        folder.path(),
+        &table.replace(",native.pdb,", ",helices_ligand.pdb,"),
     );
-    assert_ne!(same, table);
-    write_pairs(folder.path(), &same);
-    assert!(
-        batch(folder.path(), &again).status.success(),
-        "what a file holds counts, not its name"
-    );
+    let refused = batch(folder.path(), &again);
+    assert_eq!(refused.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&refused.stderr);
+    assert!(said.contains("1 (a)"), "{said}");
+    write_pairs(folder.path(), table);
     let text = fs::read_to_string(&native).unwrap();
     fs::write(&native, format!("REMARK  99\n{text}")).unwrap();
     assert_eq!(batch(folder.path(), &again).status.code(), Some(2));
-    write_pairs(folder.path(), &table);
+    fs::write(&native, text).unwrap();
+    assert!(batch(folder.path(), &again).status.success());
     fs::remove_file(folder.path().join("out/a/poses.csv")).unwrap();
     assert_eq!(batch(folder.path(), &again).status.code(), Some(2));
     assert!(
@@ -303,12 +302,6 @@ fn a_table_that_is_none_is_refused_before_anything_runs() {
             Some(2),
             "'../x'",
         ),
-        (
-            format!("name,receptor,ligand\nresults.csv,{pair}\n"),
-            "",
-            Some(2),
-            "results.csv",
-        ),
     ] {
         write_pairs(folder.path(), &table);
         let words = format!("batch in/pairs.csv -o out --json {options}");
@@ -334,16 +327,19 @@ fn a_table_that_is_none_is_refused_before_anything_runs() {
         assert!(remedy.starts_with(&format!("give {word} before --")));
         assert!(!folder.path().join("out").exists());
     }
-    // Nor is a table of somebody else's replaced.
+    // Nor is a directory of somebody else's taken.
     write_pairs(folder.path(), &format!("receptor,ligand\n{pair}\n"));
     fs::create_dir(folder.path().join("out")).unwrap();
     fs::write(folder.path().join("out/results.csv"), "mine\n").unwrap();
     let output = batch(folder.path(), "batch in/pairs.csv -o out");
     assert_eq!(output.status.code(), Some(2));
+    let said = String::from_utf8_lossy(&output.stderr);
+    assert!(said.contains("not empty"), "{said}");
     assert_eq!(
         fs::read_to_string(folder.path().join("out/results.csv")).unwrap(),
         "mine\n"
     );
+    assert_eq!(fs::read_dir(folder.path().join("out")).unwrap().count(), 1);
 }
 
 /// The table beside the example does what README says.
@@ -394,35 +390,32 @@ fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
 /// Found by a user: two batches into one folder each wrote results.csv without the other's rows, and the last one
 /// stood.
 #[test]
-fn two_batches_into_one_directory_lose_no_row() {
+fn a_directory_has_one_batch() {
     let folder = place();
     let table = |rows: &str| write_pairs(folder.path(), &format!("name;Receptor;Ligand\n{rows}"));
     let call = format!("batch in/pairs.csv -o out {OPTIONS} --rotations 12");
+    let refused = || {
+        let output = batch(folder.path(), &call);
+        assert_eq!(output.status.code(), Some(2));
+        String::from_utf8_lossy(&output.stderr).into_owned()
+    };
     table("first;helices_receptor.pdb;helices_ligand.pdb\n");
-    // A user's file of the name that the lock once had: it went with the batch.
-    let mine = folder.path().join("out/results.csv.lock");
-    fs::create_dir(folder.path().join("out")).unwrap();
-    fs::write(&mine, "mine").unwrap();
-    let held = FolderLock::take(&folder.path().join("out")).unwrap();
-    assert!(held.is_some());
-    let refused = batch(folder.path(), &call);
-    assert_eq!(refused.status.code(), Some(2));
-    let said = String::from_utf8_lossy(&refused.stderr);
-    assert!(said.contains("another batch is being written"), "{said}");
+    let out = folder.path().join("out");
+    fs::create_dir(&out).unwrap();
+    let held = Lock::take(&out.join(".knotdock-lock")).unwrap();
+    let said = refused();
+    assert!(said.contains("another command is writing"), "{said}");
+    assert_eq!(fs::read_dir(&out).unwrap().count(), 1, "the lock");
     drop(held);
     assert!(batch(folder.path(), &call).status.success());
-    assert_eq!(fs::read_to_string(&mine).unwrap(), "mine");
-    let first = results(folder.path());
+    assert!(!out.join(".knotdock-lock").exists());
+    let first = fs::read(out.join("results.csv")).unwrap();
 
     table("second;charged_helices_receptor.pdb;charged_helices_ligand.pdb\n");
-    let second = batch(folder.path(), &call);
-    assert!(second.status.success());
-    let said = String::from_utf8_lossy(&second.stdout);
-    assert!(said.contains("with 1 row of earlier batches"), "{said}");
-    let rows = results(folder.path());
-    let names: Vec<&str> = rows.iter().map(|row| row["name"].as_str()).collect();
-    assert_eq!(names, ["second", "first"]);
-    assert_eq!(rows[1], first[0]);
+    let said = refused();
+    assert!(said.contains("1 (second)"), "{said}");
+    assert!(!out.join("second").exists());
+    assert_eq!(fs::read(out.join("results.csv")).unwrap(), first);
 }
 
 /// A column of another program's word was refused with a list of nothing.

@@ -8,6 +8,7 @@ use std::process::Output;
 
 use assert_cmd::cargo::cargo_bin_cmd;
 use flate2::read::MultiGzDecoder;
+use knotdock::output::files::lock::Lock;
 
 use super::{Row, batch, place, write_pairs};
 use crate::program::succeed;
@@ -19,6 +20,8 @@ const FIVE: &str = "name,receptor,ligand,native_receptor,native_ligand\n\
                     c,late.pdb,helices_ligand.pdb,,\n\
                     d,helices_ligand.pdb,helices_receptor.pdb,,\n\
                     e,charged_helices_ligand.pdb,charged_helices_receptor.pdb,,\n";
+/// What the folder of a batch, or of a shard, holds where poses are kept.
+const FILES: [&str; 4] = ["attempts.csv", "batch.json", "poses.csv.gz", "results.csv"];
 const DOCK: &str = "-- --rotations 24 --poses 40 --write-top 2";
 /// Options that take hardly any time.
 const SHORT: &str = "-- --rotations 4 --poses 5 --effects shape --threads 1";
@@ -51,6 +54,15 @@ fn unpacked(packed: &[u8]) -> String {
     text
 }
 
+/// Names in a folder, in order.
+fn names(folder: &Path) -> Vec<String> {
+    let entries = fs::read_dir(folder).unwrap();
+    let names = entries.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+    let mut names: Vec<String> = names.collect();
+    names.sort();
+    names
+}
+
 fn rows(text: &str) -> Vec<Row> {
     let rows = csv::Reader::from_reader(text.as_bytes()).into_deserialize();
     rows.map(Result::unwrap).collect()
@@ -76,20 +88,32 @@ fn any_number_of_shards_makes_the_same_tables_as_single_runs() {
             "{count}"
         );
     }
-    // Without --shard the batch is one shard, and is merged by itself.
+    // Without --shard the batch has the same tables, and needs no merge.
     let whole = batch(
         root,
         &format!("batch in/pairs.csv -o whole --keep table --rows 7 --failures-ok -j 2 {DOCK}"),
     );
     assert!(whole.status.success());
-    assert!(tables(root, "whole") == [results, poses.clone()]);
-    // Nothing is left for a pair but its rows.
-    let mut names: Vec<String> = fs::read_dir(root.join("by_2"))
-        .unwrap()
-        .map(|entry| entry.unwrap().file_name().into_string().unwrap())
+    assert!(tables(root, "whole") == [results.clone(), poses.clone()]);
+    assert_eq!(names(&root.join("whole")), FILES);
+    let refused = merge(root, "whole");
+    assert_eq!(refused.status.code(), Some(2), "{refused:?}");
+    // Nothing is left for a pair but its rows, and the table of a shard is one of a batch.
+    assert_eq!(
+        names(&root.join("by_2")),
+        ["poses.csv.gz", "results.csv", "shards"]
+    );
+    let shard = root.join("by_2/shards/0002-of-0002");
+    assert_eq!(names(&shard), FILES);
+    let of_shard = fs::read_to_string(shard.join("results.csv")).unwrap();
+    let all = String::from_utf8(results).unwrap();
+    let of_all: Vec<&str> = all
+        .lines()
+        .enumerate()
+        .filter(|(row, _)| row % 2 == 0)
+        .map(|(_, line)| line)
         .collect();
-    names.sort();
-    assert_eq!(names, ["poses.csv.gz", "results.csv", "shards"]);
+    assert_eq!(of_shard.lines().collect::<Vec<_>>(), of_all);
 
     let mut of_pair: BTreeMap<String, Vec<Row>> = BTreeMap::new();
     for row in rows(&unpacked(&poses)) {
@@ -230,7 +254,7 @@ fn failed_and_damaged_pairs_are_docked_again() {
         .collect();
     assert_eq!(status, ["done"; 5]);
 
-    let poses = root.join("out/shards/0001-of-0001/poses.csv.gz");
+    let poses = root.join("out/poses.csv.gz");
     let mut bytes = fs::read(&poses).unwrap();
     let middle = bytes.len() / 2;
     bytes[middle] ^= 0x55;
@@ -268,7 +292,7 @@ fn a_pair_has_its_time_and_its_attempts() {
         format!("{}\n", head.lines().next().unwrap()),
     )
     .unwrap();
-    fs::write(files.join("attempts.csv"), "2\n".repeat(10) + "4\n4").unwrap();
+    fs::write(files.join("attempts.csv"), "b\n".repeat(10) + "d\nd").unwrap();
     let output = batch(root, &format!("{shard} {DOCK}"));
     assert!(output.status.success(), "{output:?}");
     succeed(root, ["merge", "ended"]);
@@ -315,48 +339,47 @@ fn what_does_not_belong_together_is_refused() {
         format!("batch in/pairs.csv -o out --keep table --failures-ok {words} {DOCK}")
     };
     assert!(batch(root, &shard("--shard 1/2")).status.success());
-    refused("merge out", "1 of 2 shards are missing: 2");
+    refused("merge out", "2 of 2 ");
     succeed(root, ["merge", "out", "--partial"]);
     // Other rows, a lock that is held, another number of shards, the same shard twice.
-    refused(&shard("--shard 1/2 --rows 9"), "other pairs or options");
-    let held = knotdock::output::files::folder_lock::FolderLock::take(
-        &root.join("out/shards/0001-of-0002"),
-    );
-    let held = held.unwrap().unwrap();
-    refused(&shard("--shard 1/2"), "another batch");
+    refused(&shard("--shard 1/2 --rows 9"), "other options");
+    let held = Lock::take(&root.join("out/shards/0001-of-0002/.knotdock-lock")).unwrap();
+    refused(&shard("--shard 1/2"), "another command is writing");
     drop(held);
     assert!(batch(root, &shard("--shard 3/3")).status.success());
-    refused("merge out --partial", "of other pairs or options");
+    refused("merge out --partial", "other pairs or options");
     fs::remove_dir_all(root.join("out/shards/0003-of-0003")).unwrap();
     refused("merge out out -o both", "shard 1/2 is in");
     refused("merge out in", "it is not known where");
-    // Files of the user's, and tables of other pairs, stay.
-    let poses = root.join("out/poses.csv.gz");
-    let (table, merged) = (
-        fs::read(root.join("out/results.csv")).unwrap(),
-        fs::read(&poses).unwrap(),
-    );
-    fs::write(root.join("out/results.csv"), "name,value\n").unwrap();
-    refused("merge out --partial", "not a table of results of a batch");
-    refused(
-        "batch in/pairs.csv -o out --keep table",
-        "not a table of results of a batch",
-    );
-    let mut other = table.clone();
-    other.extend(b"other,a.pdb,b.pdb,done,,,,,,,,,,,,,,\n");
-    fs::write(root.join("out/results.csv"), &other).unwrap();
-    refused("merge out --partial", "results of other pairs");
-    assert_eq!(fs::read(root.join("out/results.csv")).unwrap(), other);
-    fs::write(root.join("out/results.csv"), table).unwrap();
-    fs::write(&poses, "mine").unwrap();
-    refused("merge out --partial", "not a file of poses of a batch");
-    fs::write(&poses, merged).unwrap();
+    // A directory of shards is that of no other batch.
+    refused("batch in/pairs.csv -o out --keep table", "not empty");
+    // Files that differ stay unless they may go.
+    let merged = tables(root, "out");
+    for name in ["results.csv", "poses.csv.gz"] {
+        fs::write(root.join("out").join(name), "mine").unwrap();
+        refused("merge out --partial", "--force");
+        assert_eq!(fs::read(root.join("out").join(name)).unwrap(), b"mine");
+        succeed(root, ["merge", "out", "--partial", "--force"]);
+        assert!(tables(root, "out") == merged, "{name}");
+        // What is there already is no reason to refuse.
+        succeed(root, ["merge", "out", "--partial"]);
+    }
     fs::create_dir_all(root.join("mine/shards/0001-of-0002")).unwrap();
-    fs::write(root.join("mine/shards/0001-of-0002/poses.csv.gz"), "mine").unwrap();
+    let mine = root.join("mine/shards/0001-of-0002/poses.csv.gz");
+    fs::write(&mine, "mine").unwrap();
     refused(
         &shard("--shard 1/2").replace("-o out", "-o mine"),
-        "belongs to no shard",
+        "not empty",
     );
+    assert_eq!(fs::read(&mine).unwrap(), b"mine");
+    // Nor does a shard go where something else is.
+    fs::create_dir(root.join("other")).unwrap();
+    fs::write(root.join("other/notes.txt"), "mine").unwrap();
+    refused(
+        &shard("--shard 1/2").replace("-o out", "-o other"),
+        "not empty",
+    );
+    assert_eq!(names(&root.join("other")), ["notes.txt"]);
     // A shard that is not done.
     assert!(batch(root, &shard("--shard 2/2")).status.success());
     let results = root.join("out/shards/0002-of-0002/results.csv");
@@ -368,8 +391,43 @@ fn what_does_not_belong_together_is_refused() {
         .unwrap()
         .set_len(cut as u64)
         .unwrap();
-    refused(
-        "merge out",
-        "1 of 5 pairs are not done, some of them of shard 2/2",
-    );
+    refused("merge out", "4 of 5 ");
+}
+
+/// What is missing is named by ranges, however much it is.
+#[test]
+fn missing_shards_and_pairs_are_named_by_ranges() {
+    let folder = place();
+    let root = folder.path();
+    // No pair has files, so that all of them fail at once.
+    let pairs: String = (1..=24)
+        .map(|pair| format!("p{pair},late.pdb,late.pdb\n"))
+        .collect();
+    write_pairs(root, &format!("name,receptor,ligand\n{pairs}"));
+    let dock = |index: usize| {
+        let call = format!(
+            "batch in/pairs.csv -o out --shard {index}/8 --keep none --failures-ok {SHORT}"
+        );
+        assert!(batch(root, &call).status.success());
+    };
+    let missing = || {
+        let output = merge(root, "out");
+        assert_eq!(output.status.code(), Some(2), "{output:?}");
+        String::from_utf8(output.stderr).unwrap()
+    };
+    for index in [1, 4] {
+        dock(index);
+    }
+    let said = missing();
+    assert!(said.contains("2-3, 5-8 of 8"), "{said}");
+    for index in [2, 3, 5, 6, 7, 8] {
+        dock(index);
+    }
+    // The fourth shard has pairs 4, 12 and 20; the first of them stays.
+    let results = root.join("out/shards/0004-of-0008/results.csv");
+    let text = fs::read_to_string(&results).unwrap();
+    let kept: String = text.split_inclusive('\n').take(2).collect();
+    fs::write(&results, kept).unwrap();
+    let said = missing();
+    assert!(said.contains("12, 20 of 24"), "{said}");
 }

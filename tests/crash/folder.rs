@@ -1,6 +1,6 @@
 //! What a folder holds, to compare.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::Path;
 
@@ -21,15 +21,33 @@ impl Snapshot {
         Self(files)
     }
 
-    /// Whether a staging folder is there.
+    /// Whether a lock is there, or something that is being written or was left.
     pub fn has_litter(&self) -> bool {
-        self.0.keys().any(|path| path.contains(".knotdock-"))
+        self.0.keys().any(|path| path.contains(MARK))
     }
 
-    /// The same without staging folders.
+    /// The same without all of that.
     pub fn without_litter(mut self) -> Self {
-        self.0.retain(|path, _| !path.contains(".knotdock-"));
+        self.0.retain(|path, _| !path.contains(MARK));
         self
+    }
+
+    /// Paths of what commands that were ended left; locks are none of it.
+    pub fn leftovers(&self) -> BTreeSet<&str> {
+        self.0.keys().filter_map(|path| leftover(path)).collect()
+    }
+
+    /// The same as the next command finds it: with the older run in its place, if that is aside and nothing has come
+    /// after it.
+    pub fn put_back(self) -> Self {
+        if self.0.contains_key("run") {
+            return self;
+        }
+        let back = |(path, text): (String, String)| match path.strip_prefix(".run.knotdock-old") {
+            Some(rest) => (format!("run{rest}"), text),
+            None => (path, text),
+        };
+        Self(self.0.into_iter().map(back).collect())
     }
 
     /// The paths at which another differs, in a line; empty where none does.
@@ -59,6 +77,17 @@ impl Snapshot {
     }
 }
 
+/// What is in the names of locks, of files and folders that are being written, and of those that were left.
+const MARK: &str = ".knotdock-";
+
+/// What a command that was ended left, if a path leads to that or into it: its name ends in twelve letters, or in `old`.
+fn leftover(path: &str) -> Option<&str> {
+    let (before, rest) = path.split_once(MARK)?;
+    let ending = rest.split('/').next()?;
+    let is_left = ending.len() == 12 || ending == "old";
+    is_left.then(|| &path[..before.len() + MARK.len() + ending.len()])
+}
+
 fn add(folder: &Path, root: &Path, files: &mut BTreeMap<String, String>) {
     for entry in fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
@@ -74,9 +103,20 @@ fn add(folder: &Path, root: &Path, files: &mut BTreeMap<String, String>) {
             let text = String::from_utf8_lossy(&fs::read(&path).unwrap()).into_owned();
             // Records hold the inputs' paths.
             let text = text.replace(&*root.to_string_lossy(), "HERE");
-            files.insert(name, settled(text));
+            let text = match name.ends_with("attempts.csv") {
+                true => each_once(&text),
+                false => settled(text),
+            };
+            files.insert(name, text);
         }
     }
+}
+
+/// The lines of a list, each once: a pair whose docking was ended is begun again.
+fn each_once(text: &str) -> String {
+    let mut seen = BTreeSet::new();
+    let lines = text.lines().filter(|line| seen.insert(*line));
+    lines.collect::<Vec<_>>().join("\n")
 }
 
 /// A record, or a table whose last column is a time, without times; other text as it is.

@@ -1,22 +1,23 @@
 //! Crashes: each command is ended at every change that it makes to the disk, and every such change is made to fail.
 //!
 //! `KNOTDOCK_FAULT` (see `src/output/files/fault.rs`) does both, in builds with debug assertions. After each: the
-//! user's files are as they were, the old or the new result stands whole, and a second call ends well and leaves
-//! nothing behind.
+//! user's files are as they were, the old or the new result stands whole, and a second call ends well and names what the
+//! first one left.
 #![cfg(debug_assertions)]
 
 mod folder;
 mod scenario;
 
 use crate::molecules;
+use crate::program::refused;
 use std::fs;
 use std::path::Path;
 
 use folder::Snapshot;
 use scenario::{Scenario, run};
 
-/// Options of the smallest docking.
-const SMALL: &str = "--rotations 4 --poses 6 --resolution 12 --effects shape --quiet";
+/// Options of the smallest docking. No call is quiet: a quiet one warns of nothing.
+const SMALL: &str = "--rotations 4 --poses 6 --resolution 12 --effects shape";
 
 /// Writes the two molecules.
 fn inputs(folder: &Path) {
@@ -63,40 +64,70 @@ fn a_run_in_place_of_another() {
     scenario.check();
 }
 
-/// Beside files of the user's, and where the system cannot exchange, the next call finishes a commit that was cut.
+/// A run goes as a whole: one with files of the user's in it, or with edited ones, does not go at all.
 #[test]
 fn a_run_among_files_of_the_users() {
-    let scenario = Scenario::new(with_a_run_and_notes, &dock("-o run --force"));
-    assert!(
-        !scenario
-            .changes()
-            .iter()
-            .any(|change| change.starts_with("exchange"))
-    );
-    scenario.by_journal().check();
+    let folder = tempfile::tempdir().unwrap();
+    with_a_run_and_notes(folder.path());
+    let before = Snapshot::of(folder.path());
+    let error = refused(folder.path(), dock("-o run --force").split_whitespace());
+    let message = error["message"].as_str().unwrap();
+    for file in ["notes.txt", "top/rank_0002.pdb", "top/session.cxs"] {
+        assert!(message.contains(file), "{file}: {message}");
+    }
+    assert_eq!(Snapshot::of(folder.path()).difference(&before), "");
 }
 
+fn without_an_exchange() -> Scenario {
+    Scenario::new(with_a_run, &dock("-o run --force")).with_variable("KNOTDOCK_NO_EXCHANGE", "1")
+}
+
+/// There the older run goes aside first, and the next call puts it back if nothing came after.
 #[test]
 fn a_run_without_an_exchange() {
-    Scenario::new(with_a_run, &dock("-o run --force"))
-        .with_variable("KNOTDOCK_NO_EXCHANGE", "1")
-        .by_journal()
-        .check();
+    without_an_exchange().check();
 }
 
+/// A command that only reads a run puts it back, too.
+#[test]
+fn a_run_that_is_aside_is_read() {
+    let scenario = without_an_exchange();
+    let is_taken = |change: &String| change.starts_with("rename") && !change.contains(".knotdock-");
+    let taken = 1 + scenario.changes().iter().position(is_taken).unwrap();
+    let root = tempfile::tempdir().unwrap();
+    let folder = scenario.fresh(root.path());
+    let old = Snapshot::of(&folder);
+    scenario.call(&folder, &[("KNOTDOCK_FAULT", &format!("kill {taken}"))]);
+    assert!(!folder.join("run").exists() && folder.join(".run.knotdock-old").exists());
+    run(&folder, "export run --rank 1 -o out");
+    assert!(!folder.join(".run.knotdock-old").exists());
+    let found = Snapshot::of(&folder);
+    assert_eq!(found.below("run").difference(&old.below("run")), "");
+}
+
+/// What is replaced as a whole cannot be the current folder, by whatever name, nor one above it.
 #[test]
 fn a_run_into_the_current_folder() {
-    Scenario::new(inputs, &dock("-o . --force"))
-        .by_journal()
-        .check();
+    let folder = tempfile::tempdir().unwrap();
+    inputs(folder.path());
+    let inner = folder.path().join("inner");
+    fs::create_dir(&inner).unwrap();
+    let before = Snapshot::of(folder.path());
+    for place in [".", "..", "../inner"] {
+        let dock = format!("dock ../receptor.pdb ../ligand.pdb {SMALL} -o {place} --force");
+        let error = refused(&inner, dock.split(' '));
+        let remedy = error["remedy"].as_str().unwrap();
+        assert!(remedy.contains("name a folder in it"), "{place}: {error}");
+    }
+    assert_eq!(Snapshot::of(folder.path()).difference(&before), "");
 }
 
 #[test]
 fn complexes_of_a_run() {
-    Scenario::new(with_a_run, "export run --rank 1-4 --quiet")
+    Scenario::new(with_a_run, "export run --rank 1-4")
         .additive()
         .check();
-    Scenario::new(with_a_run, "export run --rank 3,4 -o out/complexes --quiet")
+    Scenario::new(with_a_run, "export run --rank 3,4 -o out/complexes")
         .additive()
         .check();
 }
@@ -110,7 +141,7 @@ fn balls_of_a_mesh() {
             fs::write(folder.join(file), "old").unwrap();
         }
     };
-    let sample = "sample tetrahedron.obj --grid 2^9 -o knots.csv --export balls.obj --picture slices.svg --force --quiet";
+    let sample = "sample tetrahedron.obj --grid 2^9 -o knots.csv --export balls.obj --picture slices.svg --force";
     Scenario::new(mesh, sample).by_file().check();
 }
 
@@ -123,10 +154,10 @@ fn tables_and_files_of_solids() {
             fs::write(folder.join(file), "old").unwrap();
         }
     };
-    let collide = "collide a.csv a.csv -o out.csv --force --quiet --compute distance";
+    let collide = "collide a.csv a.csv -o out.csv --force --compute distance";
     Scenario::new(solids, collide).by_file().check();
     let obstacle = "obstacle a.csv a.csv -o out.csv --surface surface.obj --volume-grid depth.nrrd --picture balls.svg \
-                    --cells 8 --force --quiet";
+                    --cells 8 --force";
     Scenario::new(solids, obstacle).by_file().check();
 }
 
@@ -140,9 +171,7 @@ fn a_batch() {
             "name,receptor,ligand\none,receptor.pdb,ligand.pdb\ntwo,ligand.pdb,receptor.pdb\n";
         fs::write(folder.join("pairs.csv"), table).unwrap();
     };
-    let options = SMALL.replace("--quiet", "");
-    let batch =
-        format!("batch pairs.csv -o batch -j 1 --quiet -- --write-top 0 --no-report {options}");
+    let batch = format!("batch pairs.csv -o batch -j 1 -- --write-top 0 --no-report {SMALL}");
     Scenario::new(pairs, &batch)
         .by_directory(&["batch/one", "batch/two"])
         .check();
@@ -157,13 +186,13 @@ fn a_sweep_of_settings() {
         fs::write(folder.join("sweep/tradeoff.json"), record).unwrap();
     };
     let options = "--rotations 4 --poses 6 --resolution 12 --effects shape --parameters refine";
-    let tradeoff = format!("tradeoff receptor.pdb ligand.pdb -o sweep --force --quiet {options}");
+    let tradeoff = format!("tradeoff receptor.pdb ligand.pdb -o sweep --force {options}");
     Scenario::new(sweep, &tradeoff).measured().check();
 }
 
 #[test]
 fn a_table_evaluated_in_place() {
-    let evaluate = "evaluate run/poses.csv --native native.pdb -o run/poses.csv --force --quiet";
+    let evaluate = "evaluate run/poses.csv --native native.pdb -o run/poses.csv --force";
     let native = |folder: &Path| {
         with_a_run(folder);
         let complex = molecules::receptor().replace("END\n", "") + &molecules::ligand();
@@ -177,7 +206,7 @@ fn a_table_evaluated_in_place() {
 fn a_run_is_on_the_device_before_another_goes() {
     for scenario in [
         Scenario::new(with_a_run, &dock("-o run --force")),
-        Scenario::new(with_a_run_and_notes, &dock("-o run --force")),
+        without_an_exchange(),
         Scenario::new(inputs, &dock("-o run")),
     ] {
         let changes = scenario.changes();
@@ -187,10 +216,14 @@ fn a_run_is_on_the_device_before_another_goes() {
             change.starts_with("exchange")
                 || (change.starts_with("rename") && !change.contains(".knotdock-"))
         });
-        for written in changes
-            .iter()
-            .filter(|change| change.starts_with("create") && change.contains("/new/"))
-        {
+        let is_new = |change: &&String| {
+            change.starts_with("create")
+                && change.contains(".run.knotdock-")
+                && !change.ends_with("-lock")
+        };
+        let new: Vec<&String> = changes.iter().filter(is_new).collect();
+        assert!(new.len() > 4, "{changes:#?}");
+        for written in new {
             let file = written.trim_start_matches("create");
             let synced = place(&format!("sync{file}"));
             assert!(
@@ -199,10 +232,10 @@ fn a_run_is_on_the_device_before_another_goes() {
             );
             assert!(synced > last_of(&format!("write{file}")), "{written}");
         }
-        // The older files go after the folder that has the new ones is on the device, too.
+        // The older files, and the lock, go after the folder that has the new ones is on the device, too.
         let removed = changes
             .iter()
-            .rposition(|change| change.starts_with("unlink"));
+            .position(|change| change.starts_with("unlink"));
         let folder = changes
             .iter()
             .rposition(|change| change.starts_with("sync") && !change.contains(".knotdock-"));
@@ -234,6 +267,10 @@ fn snapshots_differ_where_files_do() {
     .unwrap();
     assert_ne!(first.difference(&Snapshot::of(folder.path())), "");
     let second = Snapshot::of(folder.path());
-    fs::create_dir(at(".run.knotdock-abcdefghijkl")).unwrap();
-    assert!(Snapshot::of(folder.path()).has_litter() && !second.has_litter());
+    fs::create_dir_all(at("in/.run.knotdock-abcdefghijkl/top")).unwrap();
+    fs::write(at(".run.knotdock-lock"), "").unwrap();
+    let third = Snapshot::of(folder.path());
+    assert!(third.has_litter() && !second.has_litter());
+    let left: Vec<&str> = third.leftovers().into_iter().collect();
+    assert_eq!(left, ["in/.run.knotdock-abcdefghijkl"]);
 }

@@ -3,5 +3,6 @@
 pub mod run;
 
 mod bodies;
+mod folder;
 mod record;
 mod table;

@@ -111,7 +111,6 @@ fn an_older_run_goes_only_when_forced_and_when_the_new_one_is_done() {
     let dock = "dock receptor.pdb ligand.pdb --rotations 20 --quiet";
     run(folder.path(), dock);
     let directory = folder.path().join("knotdock_receptor_ligand");
-    fs::write(directory.join("notes.txt"), "mine").unwrap();
     let before = files(&directory);
     let attempt = |arguments: &str| {
         cargo_bin_cmd!("knotdock")
@@ -134,12 +133,10 @@ fn an_older_run_goes_only_when_forced_and_when_the_new_one_is_done() {
     );
     let after = files(&directory);
     assert_ne!(after["poses.csv"], before["poses.csv"]);
-    assert_eq!(after["notes.txt"], b"mine");
     assert_eq!(
         after.keys().map(String::as_str).collect::<Vec<_>>(),
         [
             "interface.csv",
-            "notes.txt",
             "poses.csv",
             "report.html",
             "run.json",
@@ -210,15 +207,16 @@ fn an_interrupted_run_leaves_nothing_that_looks_whole() {
         .args(["--force", "--rotations", "40000"])
         .spawn()
         .unwrap();
+    // What is being written, beside the lock.
     let staged = || {
-        let names = fs::read_dir(folder.path())
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name());
-        names
-            .map(|name| name.to_string_lossy().into_owned())
-            .any(|name| name.starts_with(".run.knotdock-"))
+        let names = fs::read_dir(folder.path()).unwrap();
+        let mut names = names.map(|entry| entry.unwrap().file_name().into_string().unwrap());
+        names.find(|name| {
+            let ending = name.strip_prefix(".run.knotdock-");
+            ending.is_some_and(|ending| ending.len() == 12)
+        })
     };
-    while !staged() {
+    while staged().is_none() {
         assert!(child.try_wait().unwrap().is_none());
         std::thread::sleep(Duration::from_millis(10));
     }
@@ -230,9 +228,13 @@ fn an_interrupted_run_leaves_nothing_that_looks_whole() {
     let status = child.wait().unwrap();
     assert_eq!(status.signal(), Some(2));
     assert_eq!(files(&run_folder), before, "the older run stays as it was");
-    // The next run clears what is left.
-    assert!(staged());
-    run(folder.path(), &format!("{dock} --force --rotations 21"));
-    assert!(!staged());
+    // The next run names what is left, and leaves it to the user; the lock it takes over.
+    let left = staged().unwrap();
+    let words = format!("{dock} --force --rotations 21").replace(" --quiet", "");
+    let next = crate::program::succeed(folder.path(), words.split_whitespace());
+    let said = String::from_utf8(next.stderr).unwrap();
+    assert!(said.contains(&left), "{said}");
+    assert_eq!(staged(), Some(left));
+    assert!(!folder.path().join(".run.knotdock-lock").exists());
     assert_eq!(files(&run_folder).len(), before.len());
 }

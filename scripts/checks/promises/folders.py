@@ -27,25 +27,66 @@ def tree(folder, under=""):
     return found
 
 
+# Names that the program gives: to files and folders that it is writing, to the lock of a target, and to an older run
+# between two renames.
+BESIDE = re.compile(r"((?:[^/]+/)*?\.[^/]+\.knotdock-[A-Za-z0-9]{12})(?=/|$)")
+LOCK = re.compile(r"(?:^|.*/)\.(?:[^/]+\.)?knotdock-lock$")
+OLDER = re.compile(r"^((?:[^/]+/)*?)\.([^/]+)\.knotdock-old(?=/|$)")
+# A scratch folder's name depends on where its batch is.
+SCRATCH = re.compile(r"(?<=/)knotdock-[0-9a-f]+-(?=[0-9])")
+
+
+def leftovers(entries):
+    """Paths of a tree that commands which were killed have left beside their targets."""
+    left = {found[1] for name in entries if (found := BESIDE.match(name))}
+    older = [found for name in entries if (found := OLDER.match(name))]
+    return sorted(left | {found[0] for found in older if found[1] + found[2] in entries})
+
+
+def without(entries, paths):
+    """A tree without some entries, all below them, and the folders that hold nothing else."""
+    is_out = [name for name in entries if any(name == path or name.startswith(f"{path}/") for path in paths)]
+    rest = {name: content for name, content in entries.items() if name not in is_out}
+    above = {name for name in rest if rest[name] is None and any(path.startswith(f"{name}/") for path in paths)}
+    empty = {name for name in above if not any(other.startswith(f"{name}/") for other in rest.keys() - above)}
+    return {name: content for name, content in rest.items() if name not in empty}
+
+
+def with_older_runs(entries):
+    """A tree in which an older run that is aside, with nothing in its place, is in its place."""
+    found = {}
+    for name, content in entries.items():
+        older = OLDER.match(name)
+        is_aside = older and older[1] + older[2] not in entries
+        found[OLDER.sub(r"\1\2", name) if is_aside else name] = content
+    return found
+
+
 def record_less_times(content, folder):
-    """A run.json without what may differ between two runs of the same input: times, the machine, and this folder."""
+    """A record without what may differ between two runs of the same input: times, the machine, and this folder."""
     record = json.loads(content)
-    record.pop("timing", None)
-    record.pop("machine", None)
+    for entry in ("timing", "machine", "command"):
+        record.pop(entry, None)
     return json.dumps(record).replace(f"{folder}/", "").encode()
 
 
 def comparable(entries, folder):
-    """A tree in which two runs of the same input and options are equal. Files of a sweep keep only their names."""
+    """A tree in which two runs of the same input and options are equal.
+
+    Files of a sweep keep only their names, and so do attempts: a pair that a kill cut short is started twice.
+    """
     result = {}
     for name, content in entries.items():
-        if name.endswith("run.json") and isinstance(content, bytes):
+        name = SCRATCH.sub("knotdock-HASH-", name)
+        if re.search(r"(^|/)(run|ensemble)\.json$", name) and isinstance(content, bytes):
             try:
                 content = record_less_times(content, folder)
             except ValueError:
                 content = b"no JSON"
         elif re.search(r"(^|/)tradeoff\.(csv|json|svg)$", name):
             content = b"a sweep" if content else b""
+        elif re.search(r"(^|/)attempts\.csv$", name) and isinstance(content, bytes):
+            content = b"attempts"
         elif re.search(r"(^|/)report\.html$", name) and isinstance(content, bytes):
             # It says how long the run took; its last line says that all of it is there.
             content = b"a report" if content.endswith(b" -->\n") else content

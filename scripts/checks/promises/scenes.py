@@ -1,7 +1,6 @@
 """Small inputs, and the calls that write files: what each makes, with and without an older result in its place."""
 
 import functools
-import re
 import shutil
 import tempfile
 from dataclasses import dataclass, field
@@ -30,9 +29,10 @@ PAIRS = "receptor,ligand,name\nreceptor.pdb,ligand.pdb,one\nligand.pdb,receptor.
 
 
 def write_inputs(folder):
-    """Writes two small proteins of helices, their complex, two meshes and a table of pairs into a folder."""
+    """Writes two small proteins of helices, a copy, their complex, two meshes and a table of pairs into a folder."""
     for side in ("receptor", "ligand"):
         shutil.copy(CASES / f"helices_{side}.pdb", folder / f"{side}.pdb")
+    shutil.copy(folder / "ligand.pdb", folder / "other.pdb")
     texts = [(folder / f"{side}.pdb").read_text().replace("END\n", "") for side in ("receptor", "ligand")]
     moved = texts[1].replace(" ALA A ", " ALA C ")
     (folder / "native.pdb").write_text(texts[0] + moved + "END\n")
@@ -42,15 +42,23 @@ def write_inputs(folder):
 
 
 FEW = ["--rotations", "4", "--poses", "20"]
+FEWER = ["--rotations", "3", "--poses", "9"]
 DOCK = ["dock", "receptor.pdb", "ligand.pdb", *FEW, "-o", "run"]
-OLD = ["dock", "receptor.pdb", "ligand.pdb", "--rotations", "3", "--poses", "9", "-o", "run"]
+OLD = ["dock", "receptor.pdb", "ligand.pdb", *FEWER, "-o", "run"]
+ALSO = [*DOCK, "--ligand-also", "other.pdb"]
+OLD_ALSO = [*OLD, "--ligand-also", "other.pdb"]
 SAMPLE = ["sample", "block.obj", "--grid", "2^10", "-o", "k.csv", "--export", "k.obj", "--picture", "k.svg"]
 OLD_SAMPLE = ["sample", "key.obj", "--grid", "2^10", "-o", "k.csv", "--export", "k.obj", "--picture", "k.svg"]
 BATCH = ["batch", "pairs.csv", "-o", "runs", "--", *FEW]
-OLD_BATCH = ["batch", "pairs.csv", "-o", "runs", "--", "--rotations", "3", "--poses", "9"]
+OLD_BATCH = ["batch", "pairs.csv", "-o", "runs", "--", *FEWER]
 SWEEP = ["tradeoff", "receptor.pdb", "ligand.pdb", "--parameters", "per-rotation", *FEW, "-o", "sweep"]
 INSPECT = ["inspect", "receptor.pdb", "--atoms", "atoms.csv", "--write", "kept.pdb"]
 EVALUATE = ["evaluate", "run", "--native", "native.pdb", "-o", "measured.csv"]
+
+
+def shard(part, output="many", few=FEW, scratch=()):
+    """A call that docks a part of the table, such as 1/2."""
+    return ["batch", "pairs.csv", "-o", output, "--keep", "table", "--shard", part, *scratch, "--", *few]
 
 
 @dataclass
@@ -61,7 +69,12 @@ class Scene:
     words: list
     before: list = field(default_factory=list)
     units: tuple = ()
-    outputs: tuple = ()  # entries that a link may stand in place of
+    outputs: tuple = ()  # entries in whose place a link or a special file may be
+
+    @property
+    def goes_on(self):
+        """Whether it is done in parts that stay where a later one fails, and goes on when it is called again."""
+        return self.words[0] == "batch" or self.name == "ensemble"
 
     def prepare(self, trial):
         write_inputs(trial.folder)
@@ -72,23 +85,40 @@ class Scene:
 RUN = ("run", "run/top", "run/poses.csv", "run/run.json", "run/top/rank_0001.pdb", "run/top/rank_0002.pdb")
 BALLS = ("k.csv", "k.obj", "k.svg")
 SWEPT = ("sweep", "sweep/tradeoff.csv", "sweep/tradeoff.json", "sweep/tradeoff.svg")
-BATCHED = ("runs", "runs/results.csv", "runs/one", "runs/one/top", "runs/two/poses.csv")
+BATCHED = ("runs", "runs/batch.json", "runs/results.csv", "runs/attempts.csv", "runs/report.html", "runs/one",
+           "runs/one/top", "runs/two/poses.csv")  # fmt: skip
+MEMBERS = ("run/members/r1_l1", "run/members/r1_l2")
+JOINT = ("run", "run/members", *MEMBERS, "run/poses.csv", "run/top", "run/ensemble.json")
+SHARD = "many/shards/0001-of-0002"
+SHARDED = ("many", "many/shards", SHARD, f"{SHARD}/batch.json", f"{SHARD}/results.csv", f"{SHARD}/poses.csv.gz",
+           f"{SHARD}/attempts.csv")  # fmt: skip
+MERGED = ("many/results.csv", "many/poses.csv.gz")
+TABLES = ("tables/results.csv", "tables/poses.csv.gz")
 MORE = ("more/rank_0002.pdb", "more/rank_0012.pdb")
+ADDED = ("run/refined", "run/refined/rank_0001.pdb", "run/refined/refined.csv", "run/added.json")
 REFINED = ("run/refined/rank_0001.pdb", "run/refined/rank_0002.pdb", "run/refined/refined.csv")
 SCENES = [
     Scene("dock", DOCK, units=("run",), outputs=RUN),
     Scene("dock --force", [*DOCK, "--force"], [OLD], ("run",), RUN),
+    Scene("ensemble", ALSO, units=MEMBERS, outputs=JOINT),
+    Scene("ensemble --force", [*ALSO, "--force"], [OLD_ALSO], ("run",), JOINT),
     Scene("sample", SAMPLE, units=BALLS, outputs=BALLS),
     Scene("sample --force", [*SAMPLE, "--force"], [OLD_SAMPLE], BALLS, BALLS),
     Scene("batch", BATCH, units=("runs/one", "runs/two"), outputs=BATCHED),
     Scene("batch --force", [*BATCH, "--force"], [OLD_BATCH], ("runs/one", "runs/two"), BATCHED),
+    Scene("shard", shard("1/2"), outputs=SHARDED),
+    Scene("shard again", shard("1/2"), [shard("1/2")], outputs=SHARDED),
+    Scene("shard --scratch", shard("1/2", scratch=("--scratch", "near")), outputs=SHARDED),
+    Scene("merge", ["merge", "many"], [shard("1/2"), shard("2/2")], MERGED, (*MERGED, *SHARDED[2:6])),
+    Scene("merge --force", ["merge", "many", "-o", "tables", "--force"],
+          [shard("1/1", "old", FEWER), ["merge", "old", "-o", "tables"], shard("1/1")], TABLES, ("tables", *TABLES)),
     Scene("export", ["export", "run", "--rank", "11,12"], [DOCK], ("run/top/rank_0011.pdb", "run/top/rank_0012.pdb"),
-          ("run/top/rank_0011.pdb", "run/top")),
+          ("run/top/rank_0011.pdb", "run/top", "run/added.json")),
     Scene("export --force", ["export", "run", "--rank", "2,12", "-o", "more", "--force"],
           [DOCK, ["export", "run", "--rank", "2", "-o", "more"]], MORE, ("more", *MORE)),
-    Scene("refine", ["refine", "run", "--ranks", "1,2"], [DOCK], REFINED, ("run/refined", REFINED[0], REFINED[2])),
+    Scene("refine", ["refine", "run", "--ranks", "1,2"], [DOCK], REFINED, ADDED),
     Scene("refine --force", ["refine", "run", "--ranks", "1,2", "--force"],
-          [DOCK, ["refine", "run", "--ranks", "2", "--no-move"]], REFINED, ("run/refined", REFINED[0], REFINED[2])),
+          [DOCK, ["refine", "run", "--ranks", "2", "--no-move"]], REFINED, ADDED),
     Scene("tradeoff", SWEEP, units=("sweep",), outputs=SWEPT),
     Scene("tradeoff --force", [*SWEEP, "--force"], [SWEEP], ("sweep",), SWEPT),
     Scene("inspect", INSPECT, units=("atoms.csv", "kept.pdb"), outputs=("atoms.csv", "kept.pdb")),
@@ -125,7 +155,6 @@ def usual(knotdock, name):
         if call.code or trial.failures:
             raise RuntimeError(f"{trial.commands[-1]} fails undisturbed: {call.err} {trial.failures}")
         new = tree(trial.folder)
-        own = re.compile(rf"(?<!\d){process.pid}(?!\d)")
-        passing = sorted({own.sub("PID", name) for name in watch.names - set(old) - set(new)})
+        passing = sorted(watch.names - set(old) - set(new))
         old, new = comparable(old, trial.folder), comparable(new, trial.folder)
         return Usual(old, new, passing, call.seconds, sum(counted))

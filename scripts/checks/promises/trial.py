@@ -86,8 +86,8 @@ class Trial:
             preexec_fn=limited_time(before),
         )
 
-    def finish(self, process, watch=None):
-        """Waits for a program to end; `watch` may end it, and is called with the process."""
+    def finish(self, process, watch=None, clock=CLOCK):
+        """Waits for a program to end, as long as `clock`; `watch` may end it, and is called with the process."""
         began, output = time.monotonic(), {}
 
         def read(name, pipe):
@@ -95,7 +95,7 @@ class Trial:
 
         pipes = {"out": process.stdout, "err": process.stderr}
         readers = [threading.Thread(target=read, args=pair) for pair in pipes.items()]
-        timer = threading.Timer(CLOCK, process.kill)
+        timer = threading.Timer(clock, process.kill)
         for thread in [*readers, timer]:
             thread.start()
         if watch:
@@ -112,19 +112,19 @@ class Trial:
         cpu_seconds = usage.ru_utime + usage.ru_stime
         return Call(process.returncode, out, err, seconds, cpu_seconds, usage.ru_maxrss * 1024, process.pid)
 
-    def run(self, *words, before=None, environment=None, may_fail=True):
+    def run(self, *words, before=None, environment=None, may_fail=True, watch=None, clock=CLOCK):
         """Runs the program to its end and checks what holds for every call."""
-        call = self.finish(self.start(*words, before=before, environment=environment))
-        self.check_orderly(call, "--json" in words)
+        call = self.finish(self.start(*words, before=before, environment=environment), watch, clock)
+        self.check_orderly(call, "--json" in words, clock)
         if not may_fail:
             said = (call.out + call.err).strip()[-400:]
             self.check(call.code == 0, f"exit code {call.code}: {said}")
         return call
 
-    def check_orderly(self, call, is_json):
+    def check_orderly(self, call, is_json, clock=CLOCK):
         """Checks what holds for every call, whatever its input."""
         said = call.err.strip()[-300:]
-        if call.code < 0 and (call.seconds >= CLOCK or call.cpu_seconds >= PATIENCE - 2):
+        if call.code < 0 and (call.seconds >= clock or call.cpu_seconds >= PATIENCE - 2):
             self.check(False, f"took {call.cpu_seconds:.0f} s of processors and {call.seconds:.0f} s of the clock")
         else:
             self.check(call.code in (0, 1, 2), f"ended with {call.code}: {said}")

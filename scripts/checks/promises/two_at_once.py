@@ -3,18 +3,19 @@
 import shutil
 import time
 
-from promises.folders import below, comparable, differences, tree
+from promises.folders import BESIDE, LOCK, below, comparable, differences, tree
 from promises.scenes import DOCK, FEW, write_inputs
 
 
 def start_both(trial, calls):
-    """Starts two calls within a tenth of a second and waits for both."""
+    """Starts two calls within a tenth of a second and waits for both: one is refused, or follows the other."""
     first = trial.start(*calls[0])
     time.sleep(trial.random.choice([0.0, 0.0, trial.random.uniform(0, 0.1)]))
     second = trial.finish(trial.start(*calls[1]))
     both = [trial.finish(first), second]
     for call in both:
         trial.check_orderly(call, False)
+        trial.check(call.code in (0, 2), f"ended with {call.code}: {call.err.strip()[-200:]}")
     trial.check(any(call.code == 0 for call in both), "neither of the two ended well")
     return both
 
@@ -41,22 +42,27 @@ def docks_at_once(trial):
 
 
 def batches_at_once(trial):
-    """Of two batches into one folder at once none loses rows or runs of the other.
+    """Of two calls of one batch at once one is refused or follows, and no row is lost or there twice.
 
-    Batches of two tables start within a tenth of a second; one that is refused is called again.
+    Two calls of a batch, or of a shard with scratch folders of their own or without, start within a tenth of a second
+    of each other; one that is refused is called again. The tables are compared with those of an undisturbed batch.
     """
     write_inputs(trial.folder)
-    trial.make("others.csv", "receptor,ligand,name\nreceptor.pdb,ligand.pdb,three\n")
-    calls = [["batch", table, "-o", "runs", "--", *FEW] for table in ("pairs.csv", "others.csv")]
-    for words, call in zip(calls, start_both(trial, calls)):
+    kind = trial.random.choice(["all", "table", "shard", "scratch", "scratch"])
+    words = ["batch", "pairs.csv", "-o", "runs", "--keep", "all" if kind == "all" else "table"]
+    if kind in ("shard", "scratch"):
+        words += ["--shard", "1/1"]
+    own = [["--scratch", "near"], ["--scratch", "far"]] if kind == "scratch" else [[], []]
+    calls = [[*words, *scratch, "--", *FEW] for scratch in own]
+    for again, call in zip(calls, start_both(trial, calls)):
         if call.code:
-            trial.run(*words, may_fail=False)
-    found = below(tree(trial.folder), "runs")
-    rows = found.get("runs/results.csv", b"").decode().splitlines()[1:]
-    trial.check(sorted(row.split(",")[0] for row in rows) == ["one", "three", "two"], f"results.csv has rows {rows}")
-    expected = {"runs", "runs/results.csv", "runs/report.html", "runs/one", "runs/two", "runs/three"}
-    there = {name for name in found if name.count("/") < 2}
-    trial.check(expected <= there, f"missing: {expected - there}")
-    # A file that batches lock may stay.
-    left = {name for name in there - expected if found[name]}
-    trial.check(not left, f"left over: {sorted(left)}")
+            trial.run(*again, may_fail=False)
+    if "--shard" in words:
+        trial.run("merge", "runs", may_fail=False)
+    trial.run("batch", "pairs.csv", "-o", "whole", "--keep", "table", "--", *FEW, may_fail=False)
+    found = tree(trial.folder)
+    for name in ["results.csv"] if kind == "all" else ["results.csv", "poses.csv.gz"]:
+        is_same = found.get(f"runs/{name}") == found.get(f"whole/{name}")
+        trial.check(is_same and f"whole/{name}" in found, f"{name} is another than that of an undisturbed batch")
+    left = [name for name in found if BESIDE.match(name) or LOCK.match(name)]
+    trial.check(not left, f"left over: {left}")

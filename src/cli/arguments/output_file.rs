@@ -2,18 +2,30 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::output::files::whole_file::is_stream;
+use crate::output::files::whole_file::{FileError, is_link, is_stream, leftovers};
 
+use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::leftovers::warn_leftovers;
 
-/// Checks, before any work, that `file` can be made, is none of those that are `read`, and is not there unless
-/// `force` is true.
+/// Checks, before any work, that `file` can be made, is no link and none of those that are `read`, and is not there
+/// unless `force` is true; warns of what ended commands left beside it.
 pub fn check_output<'a>(
     file: &Path,
     read: impl IntoIterator<Item = &'a Path>,
     force: bool,
+    console: Console,
 ) -> Result<(), Failure> {
-    check_replaced(file, read, force)?;
+    check_not_read(file, read)?;
+    if is_link(file) {
+        return Err(FileError::link(file).into());
+    }
+    // A device or a pipe is there and is meant to be written to.
+    if !force && file.is_file() && !is_stream(file) {
+        return Err(Failure::input("the file is already there")
+            .at(file)
+            .remedy("choose another name, or pass --force to replace it"));
+    }
     let folder = file
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
@@ -24,21 +36,8 @@ pub fn check_output<'a>(
         .at(file)
         .remedy("name a file in a folder that exists"));
     }
-    Ok(())
-}
-
-/// Checks that `file` is none of those that are `read`, and is not there unless `force` is true.
-pub fn check_replaced<'a>(
-    file: &Path,
-    read: impl IntoIterator<Item = &'a Path>,
-    force: bool,
-) -> Result<(), Failure> {
-    check_not_read(file, read)?;
-    // A device or a pipe is there and is meant to be written to.
-    if !force && file.is_file() && !is_stream(file) {
-        return Err(Failure::input("the file is already there")
-            .at(file)
-            .remedy("choose another name, or pass --force to replace it"));
+    if !is_stream(file) {
+        warn_leftovers(&leftovers(file), console);
     }
     Ok(())
 }

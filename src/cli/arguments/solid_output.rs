@@ -80,7 +80,12 @@ fn unknown(option: &str, path: &Path, endings: &str) -> Failure {
 
 impl SolidOutput {
     /// Checks, before any work, that the files to write are none of those `read`, and can be made.
-    pub fn check(&self, read: &[&Path], allowed: Option<u64>) -> Result<(), Failure> {
+    pub fn check(
+        &self,
+        read: &[&Path],
+        allowed: Option<u64>,
+        console: Console,
+    ) -> Result<(), Failure> {
         let files: Vec<&PathBuf> = [
             &self.output,
             &self.surface,
@@ -97,7 +102,7 @@ impl SolidOutput {
                     .at(file)
                     .remedy("give each output file its own name"));
             }
-            check_output(file, read.iter().copied(), self.force)?;
+            check_output(file, read.iter().copied(), self.force, console)?;
         }
         if let Some(path) = &self.surface
             && SurfaceFormat::of(path).is_none()

@@ -1,29 +1,24 @@
 //! `knotdock batch`: many pairs in one call, and one table of what came of them.
 
 mod crew;
+mod docking;
 mod limits;
 mod pair;
 mod plan;
 mod schedule;
-mod sharded;
-mod whole;
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::bounded_read::{MAX_PAIRS, read_bounded};
 use crate::options::values::{AllOr, all_or_at_least_one, at_least_one};
-use crate::output::files::checksum::sha256;
-use crate::output::files::folder_lock::FolderLock;
-use crate::output::files::whole_file::FileError;
 use crate::output::shards::Shard;
-use crate::output::shards::record::{Keep, ShardRecord};
+use crate::output::shards::record::{BatchRecord, Keep};
 use crate::output::tables::report::counted;
 use clap::Args;
 
 use crate::cli::arguments::program::is_of_program;
+use crate::cli::batch::docking::Batching;
 use crate::cli::batch::limits::Limits;
-use crate::cli::batch::sharded::Sharding;
-use crate::cli::inputs::batch_pairs::pairs;
+use crate::cli::inputs::batch_pairs::{Pairs, pairs};
 use crate::cli::inputs::recent_molecules::keep_recent;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
@@ -104,16 +99,10 @@ impl Batch {
         }
         keep_recent();
         let shard = self.shard.unwrap_or(Shard::WHOLE);
-        let (pairs, total) = pairs(&self.pairs, shard, &directory, &self.options)?;
-        let unwritable = |source| FileError::Unwritable {
-            path: directory.clone(),
-            source,
-        };
-        std::fs::create_dir_all(&directory).map_err(unwritable)?;
-        let count = pairs.len();
+        let Pairs { own, total, sha256 } = pairs(&self.pairs, shard, &directory, &self.options)?;
         console.say(format!(
             "Docking {} of {}{} into {}",
-            counted(count, "pair"),
+            counted(own.len(), "pair"),
             self.pairs.display(),
             match self.shard {
                 Some(shard) => format!(" (shard {shard} of its {total})"),
@@ -121,34 +110,23 @@ impl Batch {
             },
             directory.display()
         ));
-        let failures_ok = self.failures_ok;
-        let code = if is_plain {
-            whole::dock_into(&directory, pairs, (self.threads, self.limits), console)?
-        } else {
-            let sharding = self.sharding(directory, shard, total)?;
-            sharding.dock(pairs, console)?
-        };
-        Ok(if failures_ok { 0 } else { code.0 })
-    }
-
-    /// The shard that the options describe, of a table of so many pairs.
-    fn sharding(self, directory: PathBuf, shard: Shard, total: usize) -> Result<Sharding, Failure> {
-        let table = read_bounded(&self.pairs, MAX_PAIRS).map_err(|error| {
-            Failure::input(format!("cannot read {}: {error}", self.pairs.display()))
-                .at(&self.pairs)
-                .remedy("give the table as a file")
-        })?;
         let rows = self.rows.unwrap_or(AllOr(Some(ROWS)));
+        let names = own
+            .iter()
+            .map(|pair| (pair.name.clone(), pair.row.checksum()));
+        let names = names.collect();
         let kept = (self.keep, rows.0);
-        Ok(Sharding {
-            record: ShardRecord::new(shard, (total, sha256(&table)), self.options, kept),
+        let batching = Batching {
+            record: BatchRecord::new(shard, (total, sha256), self.options, kept, names),
             directory,
             scratch: self.scratch,
             threads: self.threads,
             limits: self.limits,
             retry_failed: self.retry_failed,
-            is_whole: self.shard.is_none(),
-        })
+            is_shard: self.shard.is_some(),
+        };
+        let code = batching.dock(own, console)?;
+        Ok(if self.failures_ok { 0 } else { code.0 })
     }
 }
 
@@ -175,17 +153,4 @@ impl ExitCode {
             _ => self,
         }
     }
-}
-
-/// Holds a folder that batches write to: two would each write a table without the other's rows.
-fn lock(folder: &Path) -> Result<FolderLock, Failure> {
-    let lock = FolderLock::take(folder).map_err(|source| FileError::Unwritable {
-        path: folder.to_owned(),
-        source,
-    })?;
-    lock.ok_or_else(|| {
-        Failure::input("another batch is being written to the directory")
-            .at(folder)
-            .remedy("wait for it to end, or choose another directory with -o")
-    })
 }

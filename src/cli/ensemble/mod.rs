@@ -2,6 +2,7 @@
 
 pub mod finished;
 mod laid;
+mod place;
 mod run;
 mod written;
 

@@ -4,9 +4,8 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::ensemble::table::{DockedMember, joint};
-use crate::output::files::product::ENSEMBLE;
-use crate::output::files::staging::Staging;
-use crate::output::records::ensemble_record::{MEMBERS, RECORD};
+use crate::output::files::staging::MEMBERS;
+use crate::output::records::ensemble_record::RECORD;
 use crate::output::tables::batch_results::RunSummary;
 use crate::output::tables::poses::PoseTable;
 use crate::output::tables::report::counted;
@@ -19,12 +18,14 @@ use crate::cli::arguments::options::GivenOptions;
 use crate::cli::calibrate::cost_model;
 use crate::cli::docking::{Clock, Docking, held_by_another};
 use crate::cli::ensemble::laid::{Laid, LaidSides};
+use crate::cli::ensemble::place::Place;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::inputs::conformations::Conformation;
 use crate::cli::inputs::request::Request;
 use crate::cli::messages::brief::time_text;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
+use crate::cli::messages::leftovers::warn_leftovers;
 use crate::cli::messages::run_summary::summary_line;
 
 /// Conformations of two molecules, each pair of which is docked.
@@ -102,29 +103,37 @@ impl Ensemble {
         format!("r{}_l{}", receptor.name, ligand.name)
     }
 
-    /// The directory of its run.
-    fn folder(&self, member: Member) -> PathBuf {
-        self.directory.join(MEMBERS).join(self.name(member))
+    /// Plans a member's run, for the folder that it will have in the end.
+    fn planned(&self, member: Member, console: Console) -> Result<Docking, Failure> {
+        let folder = self.directory.join(MEMBERS).join(self.name(member));
+        self.docking(member, folder, console)
     }
 
-    /// Plans a member's run.
-    fn docking(&self, member: Member, console: Console) -> Result<Docking, Failure> {
+    /// Plans a member's run into a folder.
+    fn docking(
+        &self,
+        member: Member,
+        folder: PathBuf,
+        console: Console,
+    ) -> Result<Docking, Failure> {
         let specs = self.laid(member).map(|laid| laid.spec.clone());
         let bodies = Bodies::of(specs, &self.given.options)?;
         let request = Request::of(bodies, self.native.clone(), self.given.clone());
-        let place = (self.folder(member), self.force);
-        Docking::prepare(request, self.wanted, place, Clock::start(), console)
+        let place = (folder, self.force);
+        let mut docking = Docking::prepare(request, self.wanted, place, Clock::start(), console)?;
+        docking.shown = self.directory.join(MEMBERS).join(self.name(member));
+        Ok(docking)
     }
 
     /// Plans the first member and says what is done, then the largest; the seconds that all are expected to take.
     fn foresee(&self, console: Console) -> Result<f64, Failure> {
-        let first = self.docking(Member([0, 0]), console)?;
+        let first = self.planned(Member([0, 0]), console)?;
         let largest = Member(self.laid.sides.each_ref().map(|side| largest(side)));
         let bytes = match largest.0 {
             [0, 0] => first.memory_bytes(),
             _ => first
                 .memory_bytes()
-                .max(self.docking(largest, console.silent())?.memory_bytes()),
+                .max(self.planned(largest, console.silent())?.memory_bytes()),
         };
         let (model, _) = cost_model(console);
         let count = self.members().len();
@@ -152,8 +161,8 @@ impl Ensemble {
     /// Whether the directory holds this very ensemble already.
     pub fn is_done(&self, console: Console) -> bool {
         let is_done = |member: Member| {
-            let docking = self.docking(member, console.silent());
-            docking.is_ok_and(|docking| docking.is_done(console))
+            let docking = self.planned(member, console.silent());
+            docking.is_ok_and(|docking| docking.is_done())
         };
         let recorded = recorded_members(&self.directory.join(RECORD));
         let names: Vec<String> = self
@@ -168,14 +177,15 @@ impl Ensemble {
 
     /// Docks the members that are not there yet, and writes what they come to; the JSON object of that.
     pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
-        let staging = Staging::of(&ENSEMBLE, &self.directory, self.force)?;
+        let place = Place::open(&self.directory, self.force)?;
+        warn_leftovers(place.leftovers(), notices);
         let members = self.members();
         let (mut docked, mut kept, mut poses) = (Vec::new(), 0, 0);
         for (&member, number) in members.iter().zip(1..) {
             let clock = Instant::now();
-            let anew = self.dock(member, (console.silent(), notices))?;
+            let folder = place.member(&self.name(member));
+            let anew = self.dock(member, &folder, (console.silent(), notices))?;
             kept += usize::from(!anew);
-            let folder = self.folder(member);
             let summary = RunSummary::of(&folder)?;
             poses += summary.counts[0].unwrap_or(0);
             console.say(format!(
@@ -196,13 +206,18 @@ impl Ensemble {
         let ranking = &self.given.options.ranking;
         let body = RigidBody::new(&self.laid.points);
         let joint = joint(&docked, &body, ranking.cluster_radius, ranking.no_cluster)?;
-        self.write(&joint, (&docked, poses, kept), staging, (console, notices))
+        self.write(&joint, (&docked, poses, kept), place, console)
     }
 
     /// Docks a member, unless its run is there; whether it had to be done.
-    fn dock(&self, member: Member, (silent, notices): (Console, Console)) -> Result<bool, Failure> {
-        let docking = self.docking(member, silent)?;
-        if docking.is_done(notices) {
+    fn dock(
+        &self,
+        member: Member,
+        folder: &Path,
+        (silent, notices): (Console, Console),
+    ) -> Result<bool, Failure> {
+        let docking = self.docking(member, folder.to_owned(), silent)?;
+        if docking.is_done() {
             return Ok(false);
         }
         if let Some(directory) = docking.in_the_way() {

@@ -4,11 +4,11 @@ use std::path::Path;
 
 use crate::ensemble::table::{DockedMember, JointTable};
 use crate::output::files::seal::REPORT;
-use crate::output::files::staging::Staging;
+use crate::output::files::staging::{MEMBERS, Stage};
 use crate::output::files::viewers::ViewedComplex;
 use crate::output::files::whole_file::to_json;
 use crate::output::records::ensemble_record::{
-    EnsembleRecord, EnsembleResults, EnsembleTiming, MEMBERS, MemberRecord, RECORD, SCHEMA,
+    EnsembleRecord, EnsembleResults, EnsembleTiming, MemberRecord, RECORD, SCHEMA,
 };
 use crate::output::records::program::Program;
 use crate::output::tables::poses::PoseRow;
@@ -19,11 +19,11 @@ use serde_json::{Value, json};
 
 use crate::cli::docked::write_scripts;
 use crate::cli::ensemble::laid::Laid;
+use crate::cli::ensemble::place::Place;
 use crate::cli::ensemble::run::Ensemble;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::warn_set_aside;
 use crate::cli::report::stage_listed;
 
 impl Ensemble {
@@ -33,24 +33,25 @@ impl Ensemble {
         &self,
         joint: &JointTable,
         (docked, poses, kept): (&[DockedMember], u64, usize),
-        staging: Staging,
-        (console, notices): (Console, Console),
+        place: Place,
+        console: Console,
     ) -> Result<Value, Failure> {
+        let staging = place.stage();
         staging.write("poses.csv", |file| joint.table.write_to(file))?;
         let viewed = self.write_top(joint, &staging.folder().join("top"))?;
-        write_scripts(&staging, &viewed)?;
+        write_scripts(staging, &viewed)?;
         let results = EnsembleResults {
             rows: joint.table.rows().len(),
             clusters: joint.clusters,
             poses,
         };
-        let record = self.record(docked, results, &staging, kept)?;
+        let record = self.record(docked, results, staging, kept)?;
         let record = serde_json::to_value(&record).map_err(Failure::other)?;
         staging.write(RECORD, |file| to_json(file, &record))?;
         if !self.given.options.output.no_report {
-            stage_listed(Listed::Ensemble, &self.directory, &staging)?;
+            stage_listed(Listed::Ensemble, &self.directory, staging)?;
         }
-        warn_set_aside(&staging.commit()?, notices);
+        place.commit()?;
         self.report(joint, console);
         let top = self.directory.join("top");
         let complexes = viewed
@@ -92,7 +93,7 @@ impl Ensemble {
         &'a self,
         docked: &[DockedMember],
         results: EnsembleResults,
-        staging: &Staging,
+        staging: &Stage,
         members_kept: usize,
     ) -> Result<EnsembleRecord<'a>, Failure> {
         let member = |docked: &DockedMember| {

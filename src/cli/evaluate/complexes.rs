@@ -34,7 +34,7 @@ impl Evaluate {
             let complexes: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
             let natives = native.inputs().map(|input| input.record.path.as_path());
             let read = complexes.iter().map(PathBuf::as_path).chain(natives);
-            check_output(path, read, self.force)?;
+            check_output(path, read, self.force, console)?;
         }
         native.warn(console);
         let choice = self.chain_choice(chains.is_some());

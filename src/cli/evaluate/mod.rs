@@ -6,6 +6,8 @@ use std::path::{Path, PathBuf};
 
 use crate::evaluate::{Capri, ChainChoice, Evaluator, PoseQuality};
 use crate::options::{InputOptions, Threads, definitions};
+use crate::output::files::added::write_named;
+use crate::output::files::staging::put_back;
 use crate::output::records::ensemble_record::is_ensemble;
 use crate::output::records::recorded_run::RecordedRun;
 use crate::output::tables::fields::Column;
@@ -21,7 +23,7 @@ use crate::cli::ensemble::finished::{RunRows, runs};
 use crate::cli::inputs::molecules::Input;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::finish_before_reading;
+use crate::cli::messages::leftovers::warn_leftovers;
 
 /// Measure the poses of a run, or complexes of any program, against a known complex.
 ///
@@ -97,7 +99,7 @@ impl Evaluate {
         };
         let run_path = table_path.with_file_name("run.json");
         if let Some(directory) = run_path.parent() {
-            finish_before_reading(directory, console)?;
+            put_back(directory)?;
         }
         let mut table = PoseTable::read(&table_path)?;
         let places: Vec<usize> = (0..table.rows().len()).collect();
@@ -112,7 +114,7 @@ impl Evaluate {
         let mut qualities: Vec<Option<(PoseQuality, String)>> = vec![None; places.len()];
         let mut matches = Vec::new();
         for RunRows { run, rows } in runs(directory, &table, &places)? {
-            let evaluator = self.evaluator(&run)?;
+            let evaluator = self.evaluator(&run, console)?;
             announce(&evaluator, console);
             let poses: Vec<PoseRow> = rows.iter().map(|&row| table.rows()[row]).collect();
             for (row, (quality, report)) in rows.into_iter().zip(measure(&evaluator, &poses)) {
@@ -136,7 +138,7 @@ impl Evaluate {
             {
                 table.set_column(&column);
             }
-            table.write(path)?;
+            warn_leftovers(&write_named(path, |file| table.write_to(file))?, console);
             console.say(format!("\n{}", summary(table.rows(), &qualities)));
             console.say(format!(
                 "{} in {}",
@@ -174,12 +176,12 @@ impl Evaluate {
     }
 
     /// The known complex matched with the molecules of a run.
-    fn evaluator(&self, run_path: &Path) -> Result<Evaluator, Failure> {
+    fn evaluator(&self, run_path: &Path, console: Console) -> Result<Evaluator, Failure> {
         let (receptor, ligand, native) = self.inputs(run_path)?;
         if let Some(file) = &self.output {
             let structures = [&receptor, &ligand].into_iter().chain(native.inputs());
             let read = structures.map(|input| input.record.path.as_path());
-            check_output(file, read.chain([run_path]), self.force)?;
+            check_output(file, read.chain([run_path]), self.force, console)?;
         }
         let choice = self.chain_choice(false);
         native.evaluator_by(&receptor.molecule, &ligand.molecule, &choice)

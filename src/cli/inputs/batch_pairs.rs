@@ -6,7 +6,10 @@ use std::path::Path;
 use crate::options::definition::names_file;
 use crate::options::option_named;
 use crate::options::text::first_paragraph;
-use crate::output::shards::Shard;
+use crate::output::files::checksum::sha256;
+use crate::output::files::seal::REPORT;
+use crate::output::shards::record::RECORD;
+use crate::output::shards::{ATTEMPTS, POSES, SHARDS, Shard};
 use crate::output::tables::batch_results::RESULTS;
 use crate::output::tables::pair_table::{PairRow, read_pairs};
 use crate::plain_path::plain_path;
@@ -44,20 +47,30 @@ pub struct Pair {
     pub cost: f64,
 }
 
-/// The pairs of the table that a shard has, with their command lines, each checked as far as words go; and how many
-/// pairs there are in all.
+/// The pairs of a table that a shard has.
+pub struct Pairs {
+    /// They, in the order of the table.
+    pub own: Vec<Pair>,
+    /// How many there are in all.
+    pub total: usize,
+    /// SHA-256 of what all rows say.
+    pub sha256: String,
+}
+
+/// The pairs of the table that a shard has, with their command lines, each checked as far as words go.
 pub fn pairs(
     table: &Path,
     shard: Shard,
     directory: &Path,
     options: &[String],
-) -> Result<(Vec<Pair>, usize), Failure> {
+) -> Result<Pairs, Failure> {
     let folder = table.parent().unwrap_or(Path::new(""));
     let mut names: HashMap<String, u64> = HashMap::new();
     check_options(options)?;
     let symmetry = symmetry(options);
     let rows = read_pairs(table, symmetry.is_some())?;
-    let count = rows.len();
+    let total = rows.len();
+    let sums: String = rows.iter().map(PairRow::checksum).collect();
     let pairs = (1..).zip(rows).map(|(index, row)| {
             let wrong = |message: String, remedy: &str| {
                 Failure::input(message)
@@ -73,6 +86,12 @@ pub fn pairs(
                 return Err(wrong(
                     format!("'{name}' cannot be the name of a directory"),
                     "name the pair with letters, digits, `.`, `_` and `-`; a letter or a digit comes first",
+                ));
+            }
+            if OF_BATCH.contains(&name.to_lowercase().as_str()) {
+                return Err(wrong(
+                    format!("a file of the batch is called {name}, so no pair can be"),
+                    "give the pair another name in a column `name`",
                 ));
             }
             // Letters of either case are one where file systems think so.
@@ -104,7 +123,11 @@ pub fn pairs(
             }))
         });
     let pairs: Result<Vec<Pair>, Failure> = pairs.filter_map(Result::transpose).collect();
-    Ok((pairs?, count))
+    Ok(Pairs {
+        own: pairs?,
+        total,
+        sha256: sha256(sums.as_bytes()),
+    })
 }
 
 /// Stand for a row's files where only the options are looked at.
@@ -283,6 +306,7 @@ fn is_name(name: &str) -> bool {
         && name
             .chars()
             .all(|c| c.is_alphanumeric() || "._-".contains(c))
-        // Nor may it be the name under which results are being written.
-        && !name.to_lowercase().starts_with(RESULTS)
 }
+
+/// Names of a batch's own files and folders.
+const OF_BATCH: [&str; 6] = [RECORD, RESULTS, POSES, ATTEMPTS, REPORT, SHARDS];

@@ -6,6 +6,7 @@ use crate::dock::pair::{PreparedPair, Sampling};
 use crate::evaluate::Evaluator;
 use crate::mesh::GivenLengths;
 use crate::options::{DockOptions, MachineOptions};
+use crate::output::files::staging::put_back;
 use crate::output::records::manifest::Inputs;
 use crate::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
 use crate::output::records::recorded_run::RecordedRun;
@@ -17,7 +18,6 @@ use crate::cli::arguments::options::GivenOptions;
 use crate::cli::inputs::bodies::Bodies;
 use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
-use crate::cli::messages::set_aside::finish_before_reading;
 
 /// The offset, where it is given, and which further options are that follow from the meshes.
 pub fn lengths(given: &GivenOptions) -> (Option<f64>, GivenLengths) {
@@ -105,7 +105,7 @@ impl Request {
         console: Console,
     ) -> Result<Self, Failure> {
         if let Some(directory) = path.parent() {
-            finish_before_reading(directory, console)?;
+            put_back(directory)?;
         }
         let mut run = RecordedRun::read(path)?;
         run.options.machine = machine;

@@ -9,12 +9,9 @@ use crate::options::PotentialFileError;
 use crate::options::file::ConfigError;
 use crate::options::text::first_paragraph;
 use crate::output::files::balls::PseudoAtomError;
-use crate::output::files::exported::ExportError;
-use crate::output::files::staging::StagingError;
 use crate::output::files::whole_file::FileError;
 use crate::output::records::input_record::InputRecordError;
 use crate::output::records::recorded_run::RecordedRunError;
-use crate::output::shards::ShardError;
 use crate::output::tables::pair_table::PairTableError;
 use crate::output::tables::poses_reader::PoseTableError;
 use crate::predictions::PredictionError;
@@ -59,16 +56,6 @@ pub fn refused(error: SearchError) -> Failure {
 impl From<ListError> for Failure {
     fn from(error: ListError) -> Self {
         Self::input(&error).at(&error.path).remedy(error.remedy())
-    }
-}
-
-impl From<ShardError> for Failure {
-    fn from(error: ShardError) -> Self {
-        let failure = match error.is_input() {
-            true => Self::input(&error),
-            false => Self::other(&error),
-        };
-        failure.at(error.path()).remedy(error.remedy())
     }
 }
 
@@ -170,27 +157,6 @@ impl From<InputRecordError> for Failure {
             }
         };
         Self::input(&error).at(error.path()).remedy(remedy)
-    }
-}
-
-impl From<StagingError> for Failure {
-    fn from(error: StagingError) -> Self {
-        match error {
-            StagingError::Write(error) => error.into(),
-            StagingError::Interrupted { .. } => {
-                Self::other(&error).at(error.path()).remedy(error.remedy())
-            }
-            error => Self::input(&error).at(error.path()).remedy(error.remedy()),
-        }
-    }
-}
-
-impl From<ExportError> for Failure {
-    fn from(error: ExportError) -> Self {
-        match error {
-            ExportError::Write(error) => error.into(),
-            error => Self::input(&error).at(error.path()).remedy(error.remedy()),
-        }
     }
 }
 

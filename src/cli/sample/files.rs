@@ -11,6 +11,7 @@ use knotdock_structures::sampling::Ball;
 
 use super::Sample;
 use crate::cli::arguments::output_file::{check_output, is_same};
+use crate::cli::messages::console::Console;
 use crate::cli::messages::failure::Failure;
 
 /// Form in which balls are exported.
@@ -38,7 +39,7 @@ fn ending(path: &Path) -> Option<String> {
 
 impl Sample {
     /// Checks, before any work, that the files to write are not there and can be made.
-    pub(super) fn check_files(&self) -> Result<Option<Export>, Failure> {
+    pub(super) fn check_files(&self, console: Console) -> Result<Option<Export>, Failure> {
         let files: Vec<&PathBuf> = [
             Some(&self.output),
             self.picture.as_ref(),
@@ -53,7 +54,7 @@ impl Sample {
                     .at(file)
                     .remedy("give each output file its own name"));
             }
-            check_output(file, [self.mesh.as_path()], self.force)?;
+            check_output(file, [self.mesh.as_path()], self.force, console)?;
         }
         if let Some(path) = &self.picture
             && ending(path).as_deref() != Some("svg")

@@ -132,7 +132,7 @@ impl Sample {
     /// Samples on the threads of the caller.
     fn sample(self, console: Console) -> Result<(), Failure> {
         let method = self.method()?;
-        let export = self.check_files()?;
+        let export = self.check_files(console)?;
         let start = Instant::now();
         let (mesh, report) = mesh::read(&self.mesh)?;
         let reading = Step::since("reading the mesh", start);

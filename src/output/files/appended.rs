@@ -4,6 +4,7 @@ use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
+use super::disk;
 use super::fault::point;
 use super::whole_file::FileError;
 
@@ -19,19 +20,26 @@ pub struct AppendedFile {
 }
 
 impl AppendedFile {
-    /// Opens a file after its first `length` bytes; the rest is cut off. A file that is not there is made.
+    /// Opens a file after its first `length` bytes; the rest is cut off. A file that is not there is made; no link is
+    /// followed.
     ///
     /// # Errors
     /// [`FileError`] where it cannot be opened or cut.
     pub fn open(path: &Path, length: u64) -> Result<Self, FileError> {
         let failed = |source| FileError::unwritable(path, source);
         point("open", path).map_err(failed)?;
-        let mut file = File::options()
-            .write(true)
-            .create(true)
-            .truncate(false)
-            .open(path)
-            .map_err(failed)?;
+        let made = disk::create(path);
+        let mut file = match made {
+            Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
+                let file = disk::open(path, File::options().write(true)).map_err(failed)?;
+                let is_alone = disk::has_one_name(&file).map_err(failed)?;
+                match is_alone {
+                    true => file,
+                    false => return Err(failed(io::Error::other("it has another name, too"))),
+                }
+            }
+            made => made.map_err(failed)?,
+        };
         let cut = |file: &mut File| {
             if file.metadata()?.len() != length {
                 point("cut", path)?;

@@ -3,52 +3,23 @@
 //! New files and folders are made exclusively: what is there already, a link too, is an error and stays. Each change
 //! is announced to [`fault`], so that tests can end the program at any of them.
 
-use std::fs::{self, File, Permissions};
+use std::fs::{self, File, OpenOptions, Permissions};
 use std::io;
 use std::path::{Path, PathBuf};
 
 use super::fault::point;
 
-/// A file that is being written.
-#[derive(Debug)]
-pub(super) struct NewFile {
-    file: File,
-    path: PathBuf,
-}
-
-impl NewFile {
-    /// Makes a file that was not there, with the mode that the process gives to new files.
-    ///
-    /// # Errors
-    /// What the system says; [`io::ErrorKind::AlreadyExists`] where something has the name.
-    pub fn create(path: &Path) -> io::Result<Self> {
-        point("create", path)?;
-        let file = File::options()
-            .read(true)
-            .write(true)
-            .create_new(true)
-            .open(path)?;
-        Ok(Self {
-            file,
-            path: path.to_owned(),
-        })
-    }
-
-    /// The open file.
-    pub fn into_file(self) -> File {
-        self.file
-    }
-}
-
-impl io::Write for NewFile {
-    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        point("write", &self.path)?;
-        self.file.write(bytes)
-    }
-
-    fn flush(&mut self) -> io::Result<()> {
-        self.file.flush()
-    }
+/// Makes a file that was not there, with the mode that the process gives to new files.
+///
+/// # Errors
+/// What the system says; [`io::ErrorKind::AlreadyExists`] where something has the name.
+pub(super) fn create(path: &Path) -> io::Result<File> {
+    point("create", path)?;
+    File::options()
+        .read(true)
+        .write(true)
+        .create_new(true)
+        .open(path)
 }
 
 /// Makes a folder that was not there.
@@ -73,10 +44,34 @@ pub(super) fn create_dir_all(path: &Path) -> io::Result<Vec<PathBuf>> {
     Ok(made)
 }
 
-/// Copies a file to a name that nothing has.
-pub(super) fn copy(from: &Path, to: &Path) -> io::Result<()> {
-    let mut copy = NewFile::create(to)?;
-    io::copy(&mut File::open(from)?, &mut copy).map(drop)
+/// Opens a file that is there: no link, and nothing that is no file, such as a pipe, for which one would wait.
+pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
+    #[cfg(unix)]
+    {
+        use rustix::fs::OFlags;
+        use std::os::unix::fs::OpenOptionsExt;
+        options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed());
+    }
+    let file = options.open(path)?;
+    let is_file = file.metadata()?.is_file() && path.symlink_metadata()?.is_file();
+    match is_file {
+        true => Ok(file),
+        false => Err(io::Error::new(
+            io::ErrorKind::InvalidInput,
+            "it is a link, or no file",
+        )),
+    }
+}
+
+/// Whether a file has no other name (hard link), under which it would change, too.
+pub(super) fn has_one_name(file: &File) -> io::Result<bool> {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        Ok(file.metadata()?.nlink() == 1)
+    }
+    #[cfg(not(unix))]
+    file.metadata().map(|_| true)
 }
 
 /// Moves a file or folder within a file system, in place of a file of the new name.
@@ -260,13 +255,13 @@ mod tests {
         fs::write(at("mine"), "mine").unwrap();
         fs::write(at("new"), "new").unwrap();
         let exists = |error: io::Error| error.kind() == io::ErrorKind::AlreadyExists;
-        assert!(exists(NewFile::create(&at("mine")).unwrap_err()));
+        assert!(exists(create(&at("mine")).unwrap_err()));
         assert!(exists(rename_new(&at("new"), &at("mine")).unwrap_err()));
         #[cfg(unix)]
         {
             // A link to nothing is something, too.
             std::os::unix::fs::symlink(at("nowhere"), at("link")).unwrap();
-            assert!(exists(NewFile::create(&at("link")).unwrap_err()));
+            assert!(exists(create(&at("link")).unwrap_err()));
             assert!(exists(rename_new(&at("new"), &at("link")).unwrap_err()));
             assert!(!at("nowhere").exists());
         }

@@ -33,37 +33,8 @@ mod debug {
     use std::io::{self, Write};
     use std::path::Path;
     use std::sync::atomic::{AtomicUsize, Ordering};
-    use std::sync::{LazyLock, Mutex};
-
-    /// What happens at the chosen change.
-    enum Fault {
-        Kill(usize),
-        Fail(usize),
-        Panic(usize),
-        None,
-    }
 
     static CHANGES: AtomicUsize = AtomicUsize::new(0);
-
-    static FAULT: LazyLock<Fault> = LazyLock::new(|| {
-        let text = std::env::var("KNOTDOCK_FAULT").unwrap_or_default();
-        let number = |rest: &str| rest.trim().parse().ok();
-        let kill = text.strip_prefix("kill ").and_then(number);
-        let fail = text.strip_prefix("fail ").and_then(number);
-        let panic = text.strip_prefix("panic ").and_then(number);
-        match (kill, fail, panic) {
-            (Some(change), ..) => Fault::Kill(change),
-            (_, Some(change), _) => Fault::Fail(change),
-            (_, _, Some(change)) => Fault::Panic(change),
-            _ => Fault::None,
-        }
-    });
-
-    static LOG: LazyLock<Option<Mutex<File>>> = LazyLock::new(|| {
-        let path = std::env::var_os("KNOTDOCK_FAULT_LOG")?;
-        let file = File::options().append(true).create(true).open(path).ok()?;
-        Some(Mutex::new(file))
-    });
 
     #[allow(
         clippy::panic,
@@ -71,16 +42,19 @@ mod debug {
     )]
     pub(super) fn point(kind: &str, path: &Path) -> io::Result<()> {
         let change = 1 + CHANGES.fetch_add(1, Ordering::SeqCst);
-        if let Some(log) = &*LOG
-            && let Ok(mut log) = log.lock()
-        {
-            writeln!(log, "{kind}\t{}", path.display())?;
+        if let Some(log) = std::env::var_os("KNOTDOCK_FAULT_LOG") {
+            let line = format!("{kind}\t{}\n", path.display());
+            let mut log = File::options().append(true).create(true).open(log)?;
+            log.write_all(line.as_bytes())?;
         }
-        match *FAULT {
-            // Nothing is flushed or removed on the way out, as after a kill.
-            Fault::Kill(chosen) if chosen == change => std::process::exit(137),
-            Fault::Panic(chosen) if chosen == change => panic!("a panic on purpose"),
-            Fault::Fail(chosen) if chosen == change => Err(io::ErrorKind::StorageFull.into()),
+        let fault = std::env::var("KNOTDOCK_FAULT").unwrap_or_default();
+        match fault.split_once(' ') {
+            Some((kind, number)) if number.parse() == Ok(change) => match kind {
+                // Nothing is flushed or removed on the way out, as after a kill.
+                "kill" => std::process::exit(137),
+                "panic" => panic!("a panic on purpose"),
+                _ => Err(io::ErrorKind::StorageFull.into()),
+            },
             _ => Ok(()),
         }
     }

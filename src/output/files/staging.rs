@@ -1,110 +1,57 @@
 //! A run's directory: all of a new run or all of the older one.
 //!
-//! A run is written in a staging folder beside its directory, `.NAME.knotdock-…`, and takes its place when all of it is
-//! on the device (`commit.rs`). Where nothing may be written beside the directory, or the directory is a
-//! mount point or the current one, the staging folder lies in it. A process that is killed leaves only staging
-//! folders, which the next run into the same directory clears. Nothing in the directory that a run did not write is
-//! ever removed.
+//! The directory is this program's own: it was not there or was empty, or it holds an earlier run and nothing else. A
+//! run is written in a folder beside it, `.NAME.knotdock-` and random letters, and takes its place by one rename when
+//! all of it is on the device. An older run is exchanged for it at one stroke. Where the system cannot exchange, the
+//! older one goes aside to `.NAME.knotdock-old` first, and the next command puts it back if nothing came after.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::checksum::sha256_of_file;
-pub use super::commit::SetAside;
-use super::commit::{self, NEW};
-use super::disk;
-use super::places::{Places, resolved};
-use super::product::{Product, RUN};
-pub use super::staging_error::StagingError;
-use super::staging_folder::StagingFolder;
-use super::whole_file::{FileError, parent, write_new};
+use serde_json::Value;
 
-/// A run's directory while the run goes on: files are written under [`Staging::folder`] and appear all together on
-/// [`Staging::commit`]. Dropped before that, it leaves the directory as it was.
+use crate::bounded_read::{MAX_RECORD, read_bounded_file};
+
+use super::added::ADDED;
+use super::checksum::sha256_of_file;
+use super::disk;
+use super::lock::Lock;
+use super::seal::{REPORT, is_sealed};
+use super::whole_file::{
+    FileError, beside, is_link, leftovers, lock_beside, make_beside, parent, write_new,
+};
+
+/// The record of `knotdock dock`.
+pub const RUN: &str = "run.json";
+/// The record of `knotdock dock` of several conformations.
+pub const ENSEMBLE: &str = "ensemble.json";
+/// The record of `knotdock tradeoff`.
+pub const TRADEOFF: &str = "tradeoff.json";
+
+/// A folder that this process alone writes to, until it takes its place. Dropped before that, it goes.
 #[derive(Debug)]
-pub struct Staging {
-    product: &'static Product,
-    /// As the user named it.
-    directory: PathBuf,
-    /// Without links.
-    resolved: PathBuf,
-    /// `None` once it is removed, or must stay.
-    staging: Option<StagingFolder>,
-    /// The folder in it that is written to.
+pub struct Stage {
     folder: PathBuf,
-    /// Whether the staging folder lies beside the directory and not in it.
-    beside: bool,
-    /// Folders above the directory that were made for it.
-    made: Vec<PathBuf>,
-    /// Files of the user's that a commit which was cut and finished at the start found in its way.
-    set_aside: Vec<SetAside>,
+    /// Where its files will be, for messages.
+    shown: PathBuf,
+    /// Whether it stays.
+    is_kept: bool,
 }
 
-impl Staging {
-    /// Makes a staging folder for a run in `directory`, which also shows that it can be written to.
-    ///
-    /// # Errors
-    /// [`StagingError::ExistingRun`] or [`StagingError::BrokenRun`] when a run is there and `force` is false,
-    /// [`StagingError::NotARun`] when what is there no run has written, [`StagingError::Busy`] when another run is
-    /// being written there, [`StagingError::Write`] when nothing can be.
-    pub fn open(directory: &Path, force: bool) -> Result<Self, StagingError> {
-        Self::of(&RUN, directory, force)
-    }
-
-    /// As [`Staging::open`], for whichever product.
-    ///
-    /// # Errors
-    /// As [`Staging::open`].
-    pub fn of(
-        product: &'static Product,
-        directory: &Path,
-        force: bool,
-    ) -> Result<Self, StagingError> {
-        let unwritable = |source| FileError::unwritable(directory, source);
-        let resolved = resolved(directory).map_err(unwritable)?;
-        let places = Places {
-            directory,
-            resolved: &resolved,
-        };
-        let set_aside = places.clear(product)?;
-        places.refuse_existing(product, force)?;
-        let above = parent(&resolved);
-        let mut staging = Self {
-            product,
-            directory: directory.to_owned(),
-            folder: PathBuf::new(),
-            beside: places.may_be_beside(),
-            made: disk::create_dir_all(above).map_err(unwritable)?,
-            staging: None,
-            set_aside,
-            resolved: resolved.clone(),
-        };
-        let name = resolved.file_name().unwrap_or_default();
-        let made = match staging.beside {
-            true => StagingFolder::create(above, name),
-            false => StagingFolder::create(&resolved, OsStr::new("")),
-        };
-        let made = match made {
-            // Where nothing may be written beside the directory, perhaps it may in it.
-            Err(_) if staging.beside && resolved.is_dir() => {
-                staging.beside = false;
-                StagingFolder::create(&resolved, OsStr::new(""))
-            }
-            made => made,
-        };
-        let own = made.map_err(unwritable)?;
-        staging.folder = own.path().join(NEW);
-        let own = staging.staging.insert(own);
-        // Another run may have started or ended between the first look and the lock.
-        if let Some(folder) = places.others(Some(own))?.in_use {
-            let directory = directory.to_owned();
-            return Err(StagingError::Busy { directory, folder });
-        }
-        places.refuse_existing(product, force)?;
-        disk::create_dir(&staging.folder).map_err(unwritable)?;
-        Ok(staging)
+impl Stage {
+    /// A new folder beside a place.
+    pub(super) fn beside(place: &Path, shown: &Path) -> Result<Self, FileError> {
+        let made = make_beside(place, disk::create_dir);
+        let (_, path) = made.map_err(|source| FileError::unwritable(shown, source))?;
+        Ok(Self {
+            folder: path
+                .keep()
+                .map_err(|error| FileError::unwritable(shown, error))?,
+            shown: shown.to_owned(),
+            is_kept: false,
+        })
     }
 
     /// The folder to write into.
@@ -112,125 +59,402 @@ impl Staging {
         &self.folder
     }
 
-    /// Writes a file of the run.
+    /// Writes a file.
     ///
     /// # Errors
-    /// [`FileError::Write`] when it cannot be written, under the name that it would have had.
+    /// [`FileError`] when it cannot be written, under the name that it would have had.
     pub fn write(
         &self,
         name: &str,
         fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
     ) -> Result<(), FileError> {
         write_new(&self.folder.join(name), fill)
-            .map_err(|source| FileError::writing(&self.directory.join(name), source))
+            .map_err(|source| FileError::writing(&self.shown.join(name), source))
     }
 
-    /// SHA-256 of each file written so far, by its path from the directory with `/` between folders. The product's
-    /// record holds them as `files`.
+    /// SHA-256 of each file written so far, by its path from the folder with `/` between folders. The record holds them
+    /// as `files`. A folder of runs has records of its own, and is left out.
     ///
     /// # Errors
-    /// [`FileError::Write`] when one cannot be read.
+    /// [`FileError`] when one cannot be read.
     pub fn checksums(&self) -> Result<BTreeMap<String, String>, FileError> {
-        let failed = |source| FileError::writing(&self.folder, source);
+        let failed = |source| FileError::writing(&self.shown, source);
         let mut checksums = BTreeMap::new();
-        for path in disk::tree(&self.folder).map_err(failed)? {
-            let file = self.folder.join(&path);
-            if file.is_dir() {
-                continue;
+        let files = disk::tree(&self.folder).map_err(failed)?;
+        for path in files.iter().filter(|path| !path.starts_with(MEMBERS)) {
+            let file = self.folder.join(path);
+            if file.is_file() {
+                checksums.insert(name_of(path), sha256_of_file(&file).map_err(failed)?);
             }
-            let names = path.iter().map(|name| name.to_string_lossy());
-            let name = names.collect::<Vec<_>>().join("/");
-            checksums.insert(name, sha256_of_file(&file).map_err(failed)?);
         }
         Ok(checksums)
     }
+}
 
-    /// Moves what was written into the run's directory, in place of an older run, once it is on the device. Returns
-    /// the files of the user's that were in the way.
-    ///
-    /// # Errors
-    /// [`StagingError::Write`] when that fails and the older run stands as it was, [`StagingError::Interrupted`] when
-    /// it does not.
-    pub fn commit(mut self) -> Result<Vec<SetAside>, StagingError> {
-        let places = Places {
-            directory: &self.directory,
-            resolved: &self.resolved,
-        };
-        let own = places.own_files(self.product)?;
-        let Some(staging) = self.staging.take() else {
-            return Ok(Vec::new());
-        };
-        let done = commit::commit(self.product, &staging, &self.resolved, own, self.beside);
-        match done {
-            Ok(done) => {
-                self.made.clear();
-                // The run stands. What stays of the staging folder is cleared by the next run.
-                if !done.is_left {
-                    let _ = staging.remove();
-                }
-                let mut set_aside = std::mem::take(&mut self.set_aside);
-                set_aside.extend(done.set_aside);
-                Ok(set_aside)
-            }
-            Err(error) if error.undone => {
-                self.staging = Some(staging);
-                Err(FileError::writing(&error.path, error.source).into())
-            }
-            Err(error) => {
-                self.made.clear();
-                Err(StagingError::Interrupted {
-                    directory: self.directory.clone(),
-                    folder: staging.path().to_owned(),
-                    source: error.source,
-                })
-            }
+impl Drop for Stage {
+    fn drop(&mut self) {
+        // A failure to tidy up has nobody to report to; what stays is reported by the next command.
+        if !self.is_kept {
+            let _ = disk::remove_tree(&self.folder);
         }
     }
 }
 
-impl Drop for Staging {
+/// Folders that were made for something. Dropped, those that are empty go.
+#[derive(Debug, Default)]
+pub(super) struct Made(pub Vec<PathBuf>);
+
+impl Drop for Made {
     fn drop(&mut self) {
-        // A failure to tidy up has nobody to report to; the next run clears what is left.
-        if let Some(staging) = self.staging.take() {
-            let _ = staging.remove();
-        }
-        for folder in self.made.iter().rev() {
+        for folder in self.0.iter().rev() {
             let _ = disk::remove_dir(folder);
         }
     }
 }
 
-/// Finishes a commit that an interrupted run left in a directory, so that the directory can be read, and clears what
-/// else such runs left. Returns the files of the user's that were in the way.
-///
-/// # Errors
-/// [`StagingError::Interrupted`] when it cannot be finished.
-pub fn finish_interrupted(directory: &Path) -> Result<Vec<SetAside>, StagingError> {
-    let directory = match directory.as_os_str().is_empty() {
-        true => Path::new("."),
-        false => directory,
-    };
-    let Ok(resolved) = directory.canonicalize() else {
-        return Ok(Vec::new());
-    };
-    let places = Places {
-        directory,
-        resolved: &resolved,
-    };
-    // Where the folder above may not be read, no run has been staged.
-    let Ok(others) = places.others(None) else {
-        return Ok(Vec::new());
-    };
-    let mut set_aside = Vec::new();
-    for staging in others.left {
-        if commit::is_committing(&staging) {
-            set_aside.extend(places.finish(&RUN, staging)?);
-        } else {
-            // In a place that may not be written to it is in nobody's way.
-            let _ = staging.remove();
+/// A run's directory while the run goes on: files are written into the stage and appear all together on
+/// [`Staging::commit`]. Dropped before that, it leaves the directory as it was.
+#[derive(Debug)]
+pub struct Staging {
+    record: &'static str,
+    /// As the user named it.
+    directory: PathBuf,
+    /// Without links.
+    place: PathBuf,
+    stage: Stage,
+    /// What commands that were ended left beside the directory.
+    pub leftovers: Vec<PathBuf>,
+    _lock: Lock,
+    _made: Made,
+}
+
+impl Staging {
+    /// Makes a staging folder for a run with a record, such as [`RUN`], which also shows that it can be written.
+    ///
+    /// # Errors
+    /// [`FileError`] when the directory holds a run and `force` is false, when it holds anything else, when another
+    /// command writes to it, and when nothing can be written there.
+    pub fn open(record: &'static str, directory: &Path, force: bool) -> Result<Self, FileError> {
+        let (place, made, lock) = locked(directory)?;
+        if place.is_dir() && (holds_current(&place) || !is_one_device(&place, parent(&place))) {
+            return Err(current(directory));
+        }
+        refuse(record, directory, &place, force)?;
+        Ok(Self {
+            record,
+            directory: directory.to_owned(),
+            leftovers: leftovers(&place),
+            stage: Stage::beside(&place, directory)?,
+            place,
+            _lock: lock,
+            _made: made,
+        })
+    }
+
+    /// What is written to.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// Moves what was written into the run's directory, in place of an older run, once it is on the device.
+    ///
+    /// # Errors
+    /// [`FileError`]. An older run stands then, in its place or aside; where something came to it that is not its own,
+    /// the new run stays beside it.
+    pub fn commit(mut self) -> Result<(), FileError> {
+        let (new, place) = (self.stage.folder.clone(), self.place.as_path());
+        let failed = |source| FileError::writing(&self.directory, source);
+        let there = place.symlink_metadata();
+        if let Ok(there) = &there {
+            disk::set_permissions(&new, there.permissions()).map_err(failed)?;
+        }
+        disk::sync_tree(&new).map_err(failed)?;
+        let older = refuse(self.record, &self.directory, place, true).inspect_err(|_| {
+            self.stage.is_kept = true;
+        });
+        let older =
+            older.map_err(|error| error.and(format!("the new run is in {}", new.display())))?;
+        let Some(older) = older else {
+            // An empty directory goes first; one that is not empty any more does not.
+            if place.is_dir() {
+                disk::remove_dir(place).map_err(failed)?;
+            }
+            disk::rename_new(&new, place).map_err(failed)?;
+            return disk::sync(parent(place)).map_err(failed);
+        };
+        let aside = replace(&new, place).map_err(failed)?;
+        // What has come to the older run since is the user's.
+        self.stage.is_kept = true;
+        // It goes only when the new one is on the device. What cannot go is reported by the next command.
+        if disk::sync(parent(place)).is_ok() {
+            remove(&aside, older);
+        }
+        Ok(())
+    }
+}
+
+/// Puts a new folder in the place of an older one; where that is now.
+fn replace(new: &Path, place: &Path) -> io::Result<PathBuf> {
+    match disk::exchange(new, place) {
+        Ok(()) => return Ok(new.to_owned()),
+        Err(error) if disk::is_unsupported(&error) => {}
+        Err(error) => return Err(error),
+    }
+    let aside = aside(place);
+    let taken =
+        |source: io::Error| io::Error::new(source.kind(), format!("{}: {source}", aside.display()));
+    disk::rename_new(place, &aside).map_err(taken)?;
+    if let Err(error) = disk::rename_new(new, place) {
+        // Where this fails, too, the next command does it.
+        let _ = disk::rename_new(&aside, place);
+        return Err(error);
+    }
+    Ok(aside)
+}
+
+/// Removes files from a folder, and the folders that are empty then. Records go last: by them it is known whose the
+/// others are.
+fn remove(folder: &Path, mut files: Vec<PathBuf>) {
+    let mut folders: BTreeSet<&Path> = BTreeSet::new();
+    files.sort_by_key(|path| (is_record(path), path.components().count() == 1));
+    for file in &files {
+        match folder.join(file).is_dir() {
+            true => folders.extend(file.ancestors()),
+            false => {
+                let _ = disk::remove_file(&folder.join(file));
+                folders.extend(file.ancestors().skip(1));
+            }
         }
     }
-    Ok(set_aside)
+    folders.insert(Path::new(""));
+    for inner in folders.iter().rev() {
+        let _ = disk::remove_dir(&folder.join(inner));
+    }
+}
+
+/// Where an older run is between two renames.
+fn aside(place: &Path) -> PathBuf {
+    beside(place, "old")
+}
+
+/// A run's directory without links, the folders made above it, and its lock. An older run that a kill left aside is put
+/// back, or goes where a new one has come.
+pub(super) fn locked(directory: &Path) -> Result<(PathBuf, Made, Lock), FileError> {
+    let unwritable = |source: io::Error| FileError::unwritable(directory, source);
+    // Without `/` at the end, behind which a link would be followed.
+    let plain: PathBuf = directory.components().collect();
+    if is_link(&plain) {
+        return Err(FileError::link(directory));
+    }
+    let (above, name) = match plain.file_name() {
+        Some(name) => (parent(&plain).to_owned(), name.to_owned()),
+        // `.` and `..`.
+        None => {
+            let whole = plain.canonicalize().map_err(unwritable)?;
+            match (whole.parent(), whole.file_name()) {
+                (Some(above), Some(name)) => (above.to_owned(), name.to_owned()),
+                _ => return Err(current(directory)),
+            }
+        }
+    };
+    let made = Made(disk::create_dir_all(&above).map_err(unwritable)?);
+    let place = above.canonicalize().map_err(unwritable)?.join(name);
+    let lock = Lock::take(&lock_beside(&place))?;
+    let aside = aside(&place);
+    let is_there = place.symlink_metadata().is_ok();
+    if !is_there && !is_link(&aside) && is_run(&aside) {
+        disk::rename_new(&aside, &place).map_err(unwritable)?;
+    } else if is_there && !is_link(&aside) && aside.is_dir() {
+        // The new run stands. What is the older one's own goes, with folders in which nothing is left.
+        let files = disk::tree(&aside).map_err(unwritable)?;
+        let others = not_own(&aside, &files).map_err(unwritable)?;
+        let is_own = |path: &PathBuf| !others.contains(path) || aside.join(path).is_dir();
+        remove(&aside, files.into_iter().filter(is_own).collect());
+    }
+    Ok((place, made, lock))
+}
+
+/// Puts an older run back that a kill left aside, so that its directory can be read.
+///
+/// # Errors
+/// [`FileError`] when it cannot be put back.
+pub fn put_back(directory: &Path) -> Result<(), FileError> {
+    let is_aside = directory.symlink_metadata().is_err() && aside(directory).is_dir();
+    is_aside.then(|| locked(directory)).transpose().map(drop)
+}
+
+fn current(directory: &Path) -> FileError {
+    FileError::refused(
+        directory,
+        "the current directory and the root of a file system cannot be the directory of a run, which is replaced as a \
+         whole",
+        "name a folder in it, such as -o run",
+    )
+}
+
+fn holds_current(place: &Path) -> bool {
+    let current = std::env::current_dir().and_then(|current| current.canonicalize());
+    current.is_ok_and(|current| current.starts_with(place))
+}
+
+/// Refuses a directory that is not a run's, and one of a run unless `force` is true; the files of a run that is there.
+fn refuse(
+    record: &str,
+    directory: &Path,
+    place: &Path,
+    force: bool,
+) -> Result<Option<Vec<PathBuf>>, FileError> {
+    let unreadable = |source: io::Error| FileError::unwritable(directory, source);
+    if place.symlink_metadata().is_err() {
+        return Ok(None);
+    }
+    if disk::entries(place).map_err(unreadable)?.is_empty() {
+        return Ok(None);
+    }
+    let refused =
+        |message: String, remedy: &str| Err(FileError::refused(directory, message, remedy));
+    if !is_of_us(&place.join(record)) {
+        return refused(
+            format!("the directory is not empty and holds no run of knotdock with {record}"),
+            "choose another directory with -o",
+        );
+    }
+    if !force {
+        return refused(
+            "the directory already holds a run".to_owned(),
+            "choose another directory with -o, or pass --force to replace the run",
+        );
+    }
+    let files = disk::tree(place).map_err(unreadable)?;
+    let others = not_own(place, &files).map_err(unreadable)?;
+    if others.is_empty() {
+        return Ok(Some(files));
+    }
+    let shown: Vec<String> = others.iter().take(3).map(|path| name_of(path)).collect();
+    let more = if others.len() > shown.len() {
+        " ..."
+    } else {
+        ""
+    };
+    refused(
+        format!(
+            "the directory holds files that are not the run's own, or were edited: {}{more}",
+            shown.join(", ")
+        ),
+        "move them away, or choose another directory with -o",
+    )
+}
+
+/// Folder of an ensemble that holds its runs.
+pub const MEMBERS: &str = "members";
+
+/// Those of a directory's files that no run in it wrote as they are.
+fn not_own(place: &Path, files: &[PathBuf]) -> io::Result<Vec<PathBuf>> {
+    let mut own = OwnFiles::default();
+    for path in files.iter().filter(|path| is_record(path)) {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let is_run = folder == Path::new("") || folder.parent() == Some(Path::new(MEMBERS));
+        if is_run && is_of_us(&place.join(path)) {
+            own.add(place, folder)?;
+        }
+    }
+    let mut others = Vec::new();
+    for path in files {
+        if !own.holds(place, path)? {
+            others.push(path.clone());
+        }
+    }
+    Ok(others)
+}
+
+/// Whether a path ends with the name of a record.
+fn is_record(path: &Path) -> bool {
+    let is_of = |record: &&str| path.file_name() == Some(OsStr::new(record));
+    [RUN, ENSEMBLE, TRADEOFF, ADDED].iter().any(is_of)
+}
+
+/// The files of runs, as their records list them.
+#[derive(Debug, Default)]
+pub(super) struct OwnFiles {
+    /// Checksums that a file may have, by its path.
+    checksums: BTreeMap<PathBuf, Vec<String>>,
+    /// Records, which list no checksum of themselves.
+    records: BTreeSet<PathBuf>,
+    /// Reports, which say by themselves that they are as they were written.
+    reports: BTreeSet<PathBuf>,
+}
+
+impl OwnFiles {
+    /// Adds those of a run in a folder of a directory.
+    pub fn add(&mut self, place: &Path, folder: &Path) -> io::Result<()> {
+        for record in [RUN, ENSEMBLE, TRADEOFF, ADDED] {
+            let path = folder.join(record);
+            if !place.join(&path).is_file() {
+                continue;
+            }
+            let listed = read_record(&place.join(&path))?;
+            for (name, checksum) in listed["files"].as_object().into_iter().flatten() {
+                let sums = self.checksums.entry(folder.join(name)).or_default();
+                sums.extend(checksum.as_str().map(str::to_owned));
+            }
+            self.records.insert(path);
+        }
+        self.reports.insert(folder.join(REPORT));
+        Ok(())
+    }
+
+    /// Whether a file is as a run wrote it.
+    pub fn holds(&self, place: &Path, path: &Path) -> io::Result<bool> {
+        let file = place.join(path);
+        if !file.symlink_metadata()?.is_file() {
+            return Ok(false);
+        }
+        if self.records.contains(path) || (self.reports.contains(path) && is_sealed(&file)) {
+            return Ok(true);
+        }
+        let Some(sums) = self.checksums.get(path) else {
+            return Ok(false);
+        };
+        Ok(sums.contains(&sha256_of_file(&file)?))
+    }
+}
+
+/// Whether a directory holds a run, an ensemble or a sweep.
+pub fn is_run(directory: &Path) -> bool {
+    let mut records = [RUN, ENSEMBLE, TRADEOFF].iter();
+    records.any(|record| is_of_us(&directory.join(record)))
+}
+
+/// Whether a file is a record of this program.
+pub(super) fn is_of_us(path: &Path) -> bool {
+    let is_file = path.symlink_metadata().is_ok_and(|found| found.is_file());
+    is_file && read_record(path).is_ok_and(|record| record["program"] == "knotdock")
+}
+
+fn read_record(path: &Path) -> io::Result<Value> {
+    Ok(serde_json::from_slice(&read_bounded_file(
+        path, MAX_RECORD,
+    )?)?)
+}
+
+/// A path from a folder, with `/` between its parts.
+pub(super) fn name_of(path: &Path) -> String {
+    let parts = path.iter().map(|part| part.to_string_lossy());
+    parts.collect::<Vec<_>>().join("/")
+}
+
+/// Whether two folders are on one file system.
+#[cfg(unix)]
+fn is_one_device(one: &Path, other: &Path) -> bool {
+    use std::os::unix::fs::MetadataExt;
+    let device = |path: &Path| path.metadata().map(|found| found.dev()).ok();
+    device(one) == device(other)
+}
+
+/// Whether two folders are on one file system: there a folder beside another is.
+#[cfg(not(unix))]
+fn is_one_device(_: &Path, _: &Path) -> bool {
+    true
 }
 
 #[cfg(test)]
@@ -238,133 +462,112 @@ mod tests {
     use super::*;
     use std::fs;
 
-    fn fill(staging: &Staging, text: &str) {
-        disk::create_dir(&staging.folder().join("top")).unwrap();
+    fn run(directory: &Path, text: &str) -> Result<(), FileError> {
+        let staging = Staging::open(RUN, directory, true)?;
+        let stage = staging.stage();
+        disk::create_dir(&stage.folder().join("top")).unwrap();
         for name in ["top/rank_0001.pdb", "poses.csv"] {
-            staging
-                .write(name, |file| file.write_all(text.as_bytes()))
-                .unwrap();
+            stage.write(name, |file| file.write_all(text.as_bytes()))?;
         }
-        let record = serde_json::json!({
-            "program": "knotdock",
-            "files": staging.checksums().unwrap(),
-        });
-        let record = record.to_string();
-        staging
-            .write("run.json", |file| file.write_all(record.as_bytes()))
-            .unwrap();
-    }
-
-    fn run(directory: &Path, text: &str) -> Vec<SetAside> {
-        let staging = Staging::open(directory, true).unwrap();
-        fill(&staging, text);
-        staging.commit().unwrap()
+        let record = serde_json::json!({ "program": "knotdock", "files": stage.checksums()? });
+        stage.write(RUN, |file| file.write_all(record.to_string().as_bytes()))?;
+        staging.commit()
     }
 
     fn text(path: &Path) -> String {
         fs::read_to_string(path).unwrap()
     }
 
-    /// Names in a folder, in order.
-    fn names(folder: &Path) -> Vec<String> {
-        let entries = disk::entries(folder).unwrap().into_iter();
-        entries
-            .map(|(path, _)| path.file_name().unwrap().to_string_lossy().into_owned())
-            .collect()
+    /// Files of a folder, in order.
+    fn files(folder: &Path) -> Vec<String> {
+        let files = disk::tree(folder).unwrap().into_iter();
+        files.map(|path| name_of(&path)).collect()
     }
 
     #[test]
     fn a_failed_run_loses_nothing_and_leaves_nothing() {
         let root = tempfile::tempdir().unwrap();
         let directory = root.path().join("all/runs/run");
-        drop(Staging::open(&directory, false).unwrap());
-        assert_eq!(
-            names(root.path()),
-            [""; 0],
-            "folders made for nothing must go"
-        );
-
-        run(&directory, "first");
-        fs::write(directory.join("notes.txt"), "mine").unwrap();
-        let second = Staging::open(&directory, true).unwrap();
-        fill(&second, "second");
-        drop(second); // the run failed before its end
+        drop(Staging::open(RUN, &directory, false).unwrap());
+        assert_eq!(files(root.path()), [""; 0], "folders made for nothing go");
+        run(&directory, "first").unwrap();
+        drop(Staging::open(RUN, &directory, true).unwrap());
         assert_eq!(text(&directory.join("poses.csv")), "first");
-
-        assert_eq!(run(&directory, "third"), []);
-        for file in ["poses.csv", "top/rank_0001.pdb"] {
-            assert_eq!(text(&directory.join(file)), "third");
-        }
-        assert_eq!(text(&directory.join("notes.txt")), "mine");
-        let expected = ["notes.txt", "poses.csv", "run.json", "top"];
-        assert_eq!(names(&directory), expected);
-        assert_eq!(names(directory.parent().unwrap()), ["run"]);
-    }
-
-    #[test]
-    fn an_older_run_is_replaced_on_request_only_and_a_stranger_never() {
-        let root = tempfile::tempdir().unwrap();
-        let directory = root.path().join("run");
-        run(&directory, "first");
-        assert!(matches!(
-            Staging::open(&directory, false),
-            Err(StagingError::ExistingRun(_))
-        ));
-        let stranger = root.path().join("stranger");
-        fs::create_dir(&stranger).unwrap();
-        fs::write(stranger.join("poses.csv"), "not ours").unwrap();
-        // Where no run is, --force is not the remedy.
-        for force in [false, true] {
-            assert!(matches!(
-                Staging::open(&stranger, force),
-                Err(StagingError::NotARun { .. })
-            ));
-        }
-        assert_eq!(text(&stranger.join("poses.csv")), "not ours");
-    }
-
-    /// Found by hostile calls: after a power cut neither a run nor `--force` was of use.
-    #[test]
-    fn a_broken_run_is_replaced_on_request() {
-        let root = tempfile::tempdir().unwrap();
-        for (number, torn) in [
-            "",
-            "\0\0\0",
-            "{\"schema\": 2, \"program\": \"knotdock\", \"fi",
-        ]
-        .into_iter()
-        .enumerate()
-        {
-            let directory = root.path().join(number.to_string());
-            run(&directory, "first");
-            fs::write(directory.join("run.json"), torn).unwrap();
-            fs::write(directory.join("poses.csv"), "").unwrap();
-            assert!(matches!(
-                Staging::open(&directory, false),
-                Err(StagingError::BrokenRun { .. })
-            ));
-            // The complex shows no sign of this program, so it may be the user's.
-            assert_eq!(run(&directory, "second").len(), 1);
-            assert_eq!(names(&directory), ["poses.csv", "run.json", "top"]);
-            assert_eq!(text(&directory.join("poses.csv")), "second");
-            assert_eq!(text(&directory.join("top/rank_0001.kept.pdb")), "first");
-        }
-    }
-
-    /// Found by hostile calls: `--force` removed what a user had put into a run's folder of complexes.
-    #[test]
-    fn what_is_not_the_runs_own_is_kept() {
-        let root = tempfile::tempdir().unwrap();
-        let directory = root.path().join("run");
-        run(&directory, "first");
-        fs::write(directory.join("top/rank_0001.pdb"), "edited").unwrap();
-        fs::write(directory.join("top/session.cxs"), "mine").unwrap();
-        let set_aside = run(&directory, "second");
-        assert_eq!(set_aside.len(), 1);
-        let expected = ["rank_0001.kept.pdb", "rank_0001.pdb", "session.cxs"];
-        assert_eq!(names(&directory.join("top")), expected);
-        assert_eq!(text(&directory.join("top/rank_0001.kept.pdb")), "edited");
+        run(&directory, "second").unwrap();
         assert_eq!(text(&directory.join("top/rank_0001.pdb")), "second");
+        let all = ["poses.csv", "run.json", "top/rank_0001.pdb"];
+        assert_eq!(
+            files(root.path()),
+            all.map(|name| format!("all/runs/run/{name}"))
+        );
+    }
+
+    /// A run takes the place of nothing but a run, on request, and of no file of the user's in it.
+    #[test]
+    fn what_is_not_a_runs_own_is_refused() {
+        let root = tempfile::tempdir().unwrap();
+        let directory = root.path().join("run");
+        fs::create_dir(&directory).unwrap();
+        run(&directory, "first").unwrap();
+        assert!(Staging::open(RUN, &directory, false).is_err());
+        assert!(Staging::open(TRADEOFF, &directory, true).is_err());
+        for (name, shown) in [
+            ("notes.txt", "notes.txt"),
+            ("top/rank_0001.pdb", "top/rank_0001.pdb"),
+        ] {
+            let file = directory.join(name);
+            let before = fs::read(&file).ok();
+            fs::write(&file, "mine").unwrap();
+            let error = run(&directory, "second").unwrap_err().to_string();
+            assert!(error.ends_with(&format!("edited: {shown}")), "{error}");
+            assert_eq!(text(&file), "mine");
+            match before {
+                Some(before) => fs::write(&file, before).unwrap(),
+                None => fs::remove_file(&file).unwrap(),
+            }
+        }
+        run(&directory, "second").unwrap();
+        for torn in ["", "\0\0\0", "{\"program\": \"knotdock\", \"fi"] {
+            fs::write(directory.join(RUN), torn).unwrap();
+            assert!(run(&directory, "third").unwrap_err().is_input());
+        }
+        assert_eq!(text(&directory.join("poses.csv")), "second");
+    }
+
+    /// What comes to an older run while the new one is made is kept, and so is the new one.
+    #[test]
+    fn what_comes_in_the_meantime_stays() {
+        let root = tempfile::tempdir().unwrap();
+        let directory = root.path().join("run");
+        run(&directory, "first").unwrap();
+        let staging = Staging::open(RUN, &directory, true).unwrap();
+        staging
+            .stage()
+            .write("poses.csv", |file| file.write_all(b"new"))
+            .unwrap();
+        fs::write(directory.join("notes.txt"), "mine").unwrap();
+        let error = staging.commit().unwrap_err().to_string();
+        let (_, kept) = error.rsplit_once("the new run is in ").unwrap();
+        assert_eq!(text(&Path::new(kept).join("poses.csv")), "new");
+        assert_eq!(leftovers(&directory), [PathBuf::from(kept)]);
+        assert_eq!(text(&directory.join("notes.txt")), "mine");
+    }
+
+    /// A kill between two renames leaves the older run aside.
+    #[test]
+    fn an_older_run_that_is_aside_is_put_back() {
+        let root = tempfile::tempdir().unwrap();
+        let directory = root.path().join("run");
+        run(&directory, "first").unwrap();
+        let old = root.path().join(".run.knotdock-old");
+        fs::rename(&directory, &old).unwrap();
+        put_back(&directory).unwrap();
+        assert_eq!(text(&directory.join("poses.csv")), "first");
+        // A folder of the user's of this name is none.
+        fs::remove_dir_all(&directory).unwrap();
+        fs::create_dir(&old).unwrap();
+        put_back(&directory).unwrap();
+        assert!(old.exists() && !directory.exists());
     }
 
     /// Found by hostile calls: a link of the staging folder's name led to a folder that was then emptied.
@@ -374,75 +577,24 @@ mod tests {
         use std::os::unix::fs::symlink;
         let root = tempfile::tempdir().unwrap();
         let at = |name: &str| root.path().join(name);
-        fs::create_dir_all(at("thesis/top")).unwrap();
-        fs::write(at("thesis/top/rank_0001.pdb"), "mine").unwrap();
-        fs::create_dir(at("run")).unwrap();
-        for name in [
-            "run/.partial",
-            "run/.knotdock-abcdefghijkl",
-            ".run.knotdock-abcdefghijkl",
+        run(&at("mine"), "first").unwrap();
+        for (link, to) in [
+            ("run", "mine"),
+            (".other.knotdock-lock", "mine/poses.csv"),
+            (".third.knotdock-old", "mine"),
         ] {
-            symlink(at("thesis"), at(name)).unwrap();
+            symlink(at(to), at(link)).unwrap();
         }
-        run(&at("run"), "first");
-        symlink(at("thesis/top"), at("linked_top")).unwrap();
-        fs::remove_dir_all(at("run/top")).unwrap();
-        symlink(at("thesis/top"), at("run/top")).unwrap();
-        assert!(matches!(
-            Staging::open(&at("run"), true),
-            Err(StagingError::NotARun { entry: "top", .. })
-        ));
-        assert_eq!(text(&at("thesis/top/rank_0001.pdb")), "mine");
-        assert_eq!(names(&at("thesis")), ["top"]);
-        // A directory named by a link is the one that it leads to.
-        symlink(at("other"), at("link")).unwrap();
-        assert!(
-            Staging::open(&at("link"), true).is_err(),
-            "it leads nowhere"
-        );
-        fs::create_dir(at("other")).unwrap();
-        run(&at("link"), "first");
-        assert!(at("link").symlink_metadata().unwrap().is_symlink());
-        assert_eq!(text(&at("other/poses.csv")), "first");
-    }
-
-    /// Found by an audit: a second run into one directory removed what the first had staged, which then failed at its
-    /// end.
-    #[test]
-    fn two_runs_do_not_share_a_directory() {
-        let root = tempfile::tempdir().unwrap();
-        let directory = root.path().join("run");
-        let first = Staging::open(&directory, false).unwrap();
-        fill(&first, "first");
-        for force in [false, true] {
-            assert!(matches!(
-                Staging::open(&directory, force),
-                Err(StagingError::Busy { .. })
-            ));
-        }
-        first.commit().unwrap();
-        assert!(matches!(
-            Staging::open(&directory, false),
-            Err(StagingError::ExistingRun(_))
-        ));
-        drop(Staging::open(&directory, true).unwrap());
-        assert_eq!(text(&directory.join("poses.csv")), "first");
-    }
-
-    #[cfg(unix)]
-    #[test]
-    fn modes_of_a_directory_and_its_files_are_kept() {
-        use std::os::unix::fs::PermissionsExt;
-        let root = tempfile::tempdir().unwrap();
-        let directory = root.path().join("run");
-        run(&directory, "first");
-        for (name, mode) in [("", 0o750), ("poses.csv", 0o640)] {
-            let mode = fs::Permissions::from_mode(mode);
-            fs::set_permissions(directory.join(name), mode).unwrap();
-        }
-        run(&directory, "second");
-        let mode = |path: &Path| fs::metadata(path).unwrap().permissions().mode() & 0o777;
-        assert_eq!(mode(&directory), 0o750);
-        assert_eq!(mode(&directory.join("poses.csv")), 0o640);
+        assert!(run(&at("run"), "second").is_err());
+        assert!(run(&at("run/"), "second").is_err());
+        assert!(run(&at("other"), "second").is_err());
+        run(&at("third"), "second").unwrap();
+        assert_eq!(text(&at("mine/poses.csv")), "first");
+        assert_eq!(text(&at("third/poses.csv")), "second");
+        // Links above are the user's way there.
+        fs::create_dir(at("far")).unwrap();
+        symlink(at("far"), at("near")).unwrap();
+        run(&at("near/run"), "second").unwrap();
+        assert_eq!(text(&at("far/run/poses.csv")), "second");
     }
 }

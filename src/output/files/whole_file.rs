@@ -1,70 +1,100 @@
 //! A file whole or not at all.
 
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
 use std::path::{Path, PathBuf};
 
 use serde::Serialize;
+use tempfile::TempPath;
 
-use super::disk::{self, NewFile};
-use super::staging_folder::StagingFolder;
+use super::checksum::sha256_of_file;
+use super::disk;
+use super::fault::point;
 
-/// Why a file could not be written.
+/// Why a file or a folder could not be read or written.
 #[derive(Debug, thiserror::Error)]
-pub enum FileError {
-    /// The place cannot be made or written to.
-    #[error("cannot write to {}: {source}", path.display())]
-    Unwritable {
-        /// The file or directory.
-        path: PathBuf,
-        /// The system's message.
-        source: io::Error,
-    },
-    /// A file could not be written although it could be made: a full disk, for instance.
-    #[error("cannot write {}: {source}", path.display())]
-    Write {
-        /// The file.
-        path: PathBuf,
-        /// The system's message.
-        source: io::Error,
-    },
+#[error("{message}")]
+pub struct FileError {
+    path: PathBuf,
+    message: String,
+    remedy: String,
+    /// Whether the request was at fault (exit code 2) and not the disk (exit code 1).
+    is_input: bool,
 }
 
 impl FileError {
-    /// A place that cannot be written to.
-    pub(crate) fn unwritable(path: &Path, source: io::Error) -> Self {
-        Self::Unwritable {
-            path: path.to_owned(),
-            source,
+    /// A place that cannot be made or written to.
+    pub fn unwritable(path: &Path, source: impl std::fmt::Display) -> Self {
+        Self::refused(
+            path,
+            format!("cannot write to {}: {source}", path.display()),
+            "name a place that you may write to",
+        )
+    }
+
+    /// A file that could not be written although it could be made: a full disk, for instance.
+    pub fn writing(path: &Path, source: impl std::fmt::Display) -> Self {
+        Self {
+            is_input: false,
+            ..Self::refused(
+                path,
+                format!("cannot write {}: {source}", path.display()),
+                "check the free space and the permissions there",
+            )
         }
     }
 
-    /// A file whose writing failed.
-    pub(crate) fn writing(path: &Path, source: io::Error) -> Self {
-        Self::Write {
-            path: path.to_owned(),
-            source,
+    /// A file that the system does not give.
+    pub fn reading(path: &Path, source: impl std::fmt::Display) -> Self {
+        Self {
+            is_input: false,
+            ..Self::refused(
+                path,
+                format!("cannot read {}: {source}", path.display()),
+                "check the disk and the permissions there",
+            )
         }
+    }
+
+    /// A file or folder that is refused, and what to do about it.
+    pub fn refused(path: &Path, message: impl Into<String>, remedy: impl Into<String>) -> Self {
+        Self {
+            path: path.to_owned(),
+            message: message.into(),
+            remedy: remedy.into(),
+            is_input: true,
+        }
+    }
+
+    /// A link where a file or a folder is to be written.
+    pub fn link(path: &Path) -> Self {
+        Self::refused(
+            path,
+            "this is a link, and nothing is written through links",
+            "name what it leads to, or another place",
+        )
+    }
+
+    /// The same with something else to know.
+    pub(super) fn and(mut self, more: impl std::fmt::Display) -> Self {
+        self.message = format!("{}; {more}", self.message);
+        self
     }
 
     /// Remedy for the user.
-    pub fn remedy(&self) -> &'static str {
-        match self {
-            Self::Unwritable { .. } => "name a place that you may write to",
-            Self::Write { .. } => "check the free space and the permissions there",
-        }
+    pub fn remedy(&self) -> &str {
+        &self.remedy
     }
 
     /// The file or directory in question.
     pub fn path(&self) -> &Path {
-        match self {
-            Self::Unwritable { path, .. } | Self::Write { path, .. } => path,
-        }
+        &self.path
     }
 
-    /// Whether the request was at fault (exit code 2) and not the writing (exit code 1).
+    /// Whether the request was at fault (exit code 2) and not the disk (exit code 1).
     pub fn is_input(&self) -> bool {
-        matches!(self, Self::Unwritable { .. })
+        self.is_input
     }
 }
 
@@ -72,104 +102,186 @@ impl FileError {
 ///
 /// A name that the system gives to the process counts too. It may be a regular file (`/dev/stdout`, redirected).
 pub fn is_stream(path: &Path) -> bool {
-    let is_own = path.starts_with("/proc")
+    is_of_process(path) || fs::metadata(path).is_ok_and(|found| !found.is_file())
+}
+
+/// Whether the system gives a name to the process, as it does `/dev/stdout`.
+fn is_of_process(path: &Path) -> bool {
+    path.starts_with("/proc")
         || path.starts_with("/dev/fd")
         || ["/dev/stdin", "/dev/stdout", "/dev/stderr"]
             .iter()
-            .any(|name| path == Path::new(name));
-    is_own || fs::metadata(path).is_ok_and(|found| !found.is_file())
+            .any(|name| path == Path::new(name))
 }
 
-/// Whether a file's bytes are none, or zeros as a power cut leaves them.
-pub fn is_blank(bytes: &[u8]) -> bool {
-    bytes.iter().all(|&byte| byte == 0)
+/// Whether a name is a link that the user made: nothing is written through it.
+pub fn is_link(path: &Path) -> bool {
+    !is_of_process(path)
+        && path
+            .symlink_metadata()
+            .is_ok_and(|found| found.is_symlink())
+}
+
+/// Random letters at the end of the name of what is being written.
+const RANDOM: usize = 12;
+/// What the command that holds a place calls its lock.
+const LOCK: &str = "lock";
+
+/// A name beside a place for something of this program: `.NAME.knotdock-` and an ending.
+pub(super) fn beside(place: &Path, ending: &str) -> PathBuf {
+    let mut name = prefix(place);
+    name.push(ending);
+    parent(place).join(name)
+}
+
+/// The lock of a place.
+pub(super) fn lock_beside(place: &Path) -> PathBuf {
+    beside(place, LOCK)
+}
+
+fn prefix(place: &Path) -> OsString {
+    // A name has 255 bytes at most in all.
+    const LONGEST: usize = 200;
+    let name = place.file_name().unwrap_or_default();
+    let mut prefix = OsString::from(".");
+    match name.len() <= LONGEST {
+        true => prefix.push(name),
+        false => {
+            let start = name.to_string_lossy();
+            prefix.push(start.chars().take(LONGEST / 4).collect::<String>());
+        }
+    }
+    prefix.push(".knotdock-");
+    prefix
+}
+
+/// Makes something beside a place, under a name that nothing had.
+pub(super) fn make_beside<R>(
+    place: &Path,
+    make: impl FnMut(&Path) -> io::Result<R>,
+) -> io::Result<(R, TempPath)> {
+    let made = tempfile::Builder::new()
+        .prefix(&prefix(place))
+        .rand_bytes(RANDOM)
+        .make_in(parent(place), make)?;
+    Ok(made.into_parts())
+}
+
+/// What commands that were ended, or still run, have beside a place. Nobody but the user can tell whether it may go.
+pub fn leftovers(place: &Path) -> Vec<PathBuf> {
+    let (lock, prefix) = (lock_beside(place), prefix(place));
+    let entries = disk::entries(parent(place)).unwrap_or_default().into_iter();
+    let is_ours = |path: &PathBuf| {
+        let name = path.file_name().unwrap_or_default().as_encoded_bytes();
+        let rest = name.strip_prefix(prefix.as_encoded_bytes());
+        rest.is_some_and(|rest| rest.len() == RANDOM || rest == b"old") && *path != lock
+    };
+    entries.map(|(path, _)| path).filter(is_ours).collect()
 }
 
 /// A file that is written and not yet in its place. Dropped, it goes, and what is in its place stays.
 #[derive(Debug)]
 pub struct StagedFile {
-    /// Where it goes; `None` for a stream, which is written to in place.
-    place: Option<PathBuf>,
-    folder: Option<StagingFolder>,
+    place: PathBuf,
+    /// Whether a file was there when this one was begun. One that comes in the meantime is not replaced.
+    replaces: bool,
+    /// Where it is; `None` for a stream, which is written to in place.
+    file: Option<TempPath>,
 }
 
-/// Name of the file in its staging folder.
-const NEW: &str = "new";
-
 impl StagedFile {
-    /// Writes a file, to the device, in a staging folder beside its place. What is not a regular file (`/dev/stdout`,
-    /// a pipe) is written to as it stands. Through a link, what it leads to is replaced and not the link. A file that
-    /// is replaced leaves its mode.
+    /// Writes a file, to the device, beside its place. What is not a regular file (`/dev/stdout`, a pipe) is written to
+    /// as it stands. A file that is replaced leaves its mode.
     ///
     /// # Errors
-    /// [`FileError::Unwritable`] when the file cannot be made, [`FileError::Write`] when writing to it fails.
+    /// [`FileError`] when the place is a link, when the file cannot be made, and when writing to it fails.
     pub fn write(
         path: &Path,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
     ) -> Result<Self, FileError> {
+        if is_link(path) {
+            return Err(FileError::link(path));
+        }
         if is_stream(path) {
             write_in_place(path, fill)?;
             return Ok(Self {
-                place: None,
-                folder: None,
+                place: path.to_owned(),
+                replaces: false,
+                file: None,
             });
         }
-        let unwritable = |source| FileError::unwritable(path, source);
-        let place = match path.symlink_metadata() {
-            // A link to nothing is an error, not a file to replace.
-            Ok(_) => path.canonicalize().map_err(unwritable)?,
-            Err(_) => path.to_owned(),
-        };
-        let (parent, name) = (parent(&place), place.file_name().unwrap_or_default());
-        // A folder that cannot be read can still be written to.
-        if let Ok(others) = StagingFolder::others(parent, name, None) {
-            for left in others.left {
-                left.remove().map_err(unwritable)?;
+        Self::own(path, fill)
+    }
+
+    /// As [`StagedFile::write`], under a name that no user chose: what is no regular file there is refused.
+    ///
+    /// # Errors
+    /// As [`StagedFile::write`].
+    pub fn own(
+        path: &Path,
+        fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
+    ) -> Result<Self, FileError> {
+        let there = path.symlink_metadata().ok();
+        if there.as_ref().is_some_and(|found| !found.is_file()) {
+            let message = format!("{} is there and is no regular file", path.display());
+            return Err(FileError::refused(
+                path,
+                message,
+                "move it away, or choose another place",
+            ));
+        }
+        let replaces = there.is_some();
+        let (file, temporary) = make_beside(path, disk::create)
+            .map_err(|source| FileError::unwritable(path, source))?;
+        let mut buffer = BufWriter::new(file);
+        let written = fill(&mut buffer).and_then(|()| {
+            point("write", path)?;
+            buffer.flush()?;
+            if let Some(there) = there {
+                disk::set_permissions(&temporary, there.permissions())?;
             }
-        }
-        let mut staged = Self {
-            folder: Some(StagingFolder::create(parent, name).map_err(unwritable)?),
-            place: None,
+            disk::sync(&temporary)
+        });
+        written.map_err(|source| FileError::writing(path, source))?;
+        Ok(Self {
+            place: path.to_owned(),
+            replaces,
+            file: Some(temporary),
+        })
+    }
+
+    /// Whether a file with the same content is in its place already.
+    ///
+    /// # Errors
+    /// [`FileError`] where one of them cannot be read.
+    pub fn is_there(&self) -> Result<bool, FileError> {
+        let (Some(file), true) = (&self.file, self.replaces) else {
+            return Ok(false);
         };
-        if let Some(folder) = &staged.folder {
-            let file = folder.path().join(NEW);
-            let written = write_new(&file, fill).and_then(|()| {
-                if let Ok(there) = fs::metadata(&place) {
-                    disk::set_permissions(&file, there.permissions())?;
-                }
-                disk::sync(&file)
-            });
-            written.map_err(|source| FileError::writing(path, source))?;
-        }
-        staged.place = Some(place);
-        Ok(staged)
+        let failed = |source| FileError::reading(&self.place, source);
+        let sum = sha256_of_file(file).map_err(failed)?;
+        Ok(sha256_of_file(&self.place).map_err(failed)? == sum)
     }
 
     /// Puts the file into its place, at one stroke.
     ///
     /// # Errors
-    /// [`FileError::Write`].
-    pub fn place(mut self) -> Result<(), FileError> {
-        let (Some(place), Some(folder)) = (&self.place, &self.folder) else {
+    /// [`FileError`].
+    pub fn place(self) -> Result<(), FileError> {
+        let Some(file) = self.file else {
             return Ok(());
         };
-        let failed = |source| FileError::writing(place, source);
-        disk::rename(&folder.path().join(NEW), place).map_err(failed)?;
-        disk::sync(parent(place)).map_err(failed)?;
-        if let Some(folder) = self.folder.take() {
-            // The file is in its place. What stays here is cleared by the next one.
-            let _ = folder.remove();
-        }
-        Ok(())
-    }
-}
-
-impl Drop for StagedFile {
-    fn drop(&mut self) {
-        if let Some(folder) = self.folder.take() {
-            // A failure to tidy up has nobody to report to; the next one clears what is left.
-            let _ = folder.remove();
-        }
+        let moved = match self.replaces {
+            true => disk::rename(&file, &self.place),
+            false => disk::rename_new(&file, &self.place),
+        };
+        moved
+            .and_then(|()| {
+                // It has another name now, and nothing is left to be removed.
+                let _ = file.keep();
+                disk::sync(parent(&self.place))
+            })
+            .map_err(|source| FileError::writing(&self.place, source))
     }
 }
 
@@ -189,8 +301,9 @@ pub(super) fn write_new(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> io::Result<()> {
-    let mut buffer = BufWriter::new(NewFile::create(path)?);
+    let mut buffer = BufWriter::new(disk::create(path)?);
     fill(&mut buffer)?;
+    point("write", path)?;
     buffer.flush()
 }
 
@@ -239,7 +352,7 @@ mod tests {
             file.write_all(b"half")?;
             Err(io::Error::other("disk full"))
         });
-        assert!(matches!(failed, Err(FileError::Write { .. })));
+        assert!(!failed.unwrap_err().is_input());
         assert_eq!(fs::read_to_string(&path).unwrap(), "old");
         assert_eq!(fs::read_dir(root.path()).unwrap().count(), 1);
     }
@@ -297,14 +410,29 @@ mod tests {
     /// Found by a review: a link was replaced by the file, even where it was `/dev/stdout`.
     #[cfg(unix)]
     #[test]
-    fn through_a_link_what_it_leads_to_is_replaced() {
+    fn nothing_is_written_through_a_link() {
+        use std::os::unix::fs::symlink;
         let root = tempfile::tempdir().unwrap();
         let (file, link) = (root.path().join("table.csv"), root.path().join("link.csv"));
         fs::write(&file, "old").unwrap();
-        std::os::unix::fs::symlink(&file, &link).unwrap();
-        write_whole(&link, |file| file.write_all(b"new")).unwrap();
-        assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
-        assert_eq!(fs::read_to_string(&file).unwrap(), "new");
+        symlink(&file, &link).unwrap();
+        symlink(root.path().join("nowhere"), root.path().join("dangling")).unwrap();
+        for name in ["link.csv", "dangling"] {
+            let written = write_whole(&root.path().join(name), |file| file.write_all(b"new"));
+            assert!(written.unwrap_err().is_input());
+        }
+        assert_eq!(fs::read_to_string(&file).unwrap(), "old");
+        assert_eq!(fs::read_dir(root.path()).unwrap().count(), 3);
         assert!(is_stream(Path::new("/dev/stdout")) && !is_stream(&link));
+    }
+
+    #[test]
+    fn what_was_left_is_found_and_a_long_name_fits() {
+        let root = tempfile::tempdir().unwrap();
+        let place = root.path().join("n".repeat(255));
+        let (_, left) = make_beside(&place, disk::create).unwrap();
+        let _lock = super::super::lock::Lock::take(&lock_beside(&place)).unwrap();
+        assert_eq!(leftovers(&place), [left.to_path_buf()]);
+        assert!(leftovers(&root.path().join("other")).is_empty());
     }
 }

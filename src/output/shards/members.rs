@@ -6,17 +6,24 @@
 
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
-use std::path::Path;
 
 use flate2::Compression;
 use flate2::bufread::GzDecoder;
 use flate2::write::GzEncoder;
 
+use crate::output::files::folder::next_line;
+
+/// Most bytes of a member's text.
+const MAX_TEXT: u64 = 64 << 20;
+
 /// Text as a member: the same bytes for the same text.
 ///
 /// # Errors
-/// None that memory does not have.
+/// [`io::ErrorKind::FileTooLarge`] for a text of more than 64 MB.
 pub(super) fn packed(text: &[u8]) -> io::Result<Vec<u8>> {
+    if text.len() as u64 > MAX_TEXT {
+        return Err(too_large());
+    }
     let mut encoder = GzEncoder::new(Vec::new(), Compression::default());
     encoder.write_all(text)?;
     encoder.finish()
@@ -38,30 +45,27 @@ pub(super) struct Members {
 
 impl Members {
     /// The members of a file, from its first byte.
-    ///
-    /// # Errors
-    /// What the system says.
-    pub fn of(path: &Path) -> io::Result<Self> {
-        Ok(Self {
-            file: BufReader::with_capacity(1 << 16, File::open(path)?),
-        })
+    pub fn of(file: File) -> Self {
+        Self {
+            file: BufReader::with_capacity(1 << 16, file),
+        }
     }
 
     /// The next member; `None` where the file ends or what follows is no whole member.
     ///
     /// # Errors
-    /// What the system says about reading.
+    /// What the system says about reading, and [`io::ErrorKind::FileTooLarge`] for a member of more than 64 MB.
     pub fn next(&mut self) -> io::Result<Option<Member>> {
         let start = self.file.stream_position()?;
         if self.file.fill_buf()?.is_empty() {
             return Ok(None);
         }
-        let mut text = BufReader::new(GzDecoder::new(&mut self.file));
+        let mut text = BufReader::new(GzDecoder::new(&mut self.file).take(MAX_TEXT + 1));
         let mut first_line = Vec::new();
-        let read = text
-            .read_until(b'\n', &mut first_line)
+        let read = next_line(&mut text, &mut first_line)
             .and_then(|_| io::copy(&mut text, &mut io::sink()));
         match read {
+            Ok(_) if text.get_ref().limit() == 0 => return Err(too_large()),
             Ok(_) => {}
             Err(error)
                 if matches!(
@@ -75,14 +79,18 @@ impl Members {
             }
             Err(error) => return Err(error),
         }
-        if first_line.last() == Some(&b'\n') {
-            first_line.pop();
-        }
         Ok(Some(Member {
             range: (start, self.file.stream_position()?),
             first_line,
         }))
     }
+}
+
+fn too_large() -> io::Error {
+    io::Error::new(
+        io::ErrorKind::FileTooLarge,
+        "the poses of a pair have more than 64 MB of text",
+    )
 }
 
 /// Copies a range of bytes of a file.
@@ -106,8 +114,8 @@ pub(super) fn copy_range(
 mod tests {
     use super::*;
 
-    fn all(path: &Path) -> Vec<Member> {
-        let mut members = Members::of(path).unwrap();
+    fn all(path: &std::path::Path) -> Vec<Member> {
+        let mut members = Members::of(File::open(path).unwrap());
         std::iter::from_fn(|| members.next().unwrap()).collect()
     }
 

@@ -1,20 +1,18 @@
 //! The shards of a batch put together, in the order of the table of pairs.
 
 use std::collections::hash_map::Entry;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io;
 use std::path::{Path, PathBuf};
 
-use super::journal::{ShardPair, with_poses};
 use super::members::copy_range;
-use super::record::ShardRecord;
-use super::results::rows;
-use super::{POSES, SHARDS, Shard, ShardError, pose_rows};
-use crate::bounded_read::{MAX_POSES, read_bounded_file};
-use crate::output::files::whole_file::{is_blank, write_whole};
-use crate::output::tables::batch_results::{RESULTS, header, is_ours};
-use crate::output::tables::cells::{TableWriter, unquoted};
+use super::part::{Index, Range};
+use super::record::BatchRecord;
+use super::{POSES, SHARDS, Shard, pose_rows};
+use crate::output::files::folder::open_own;
+use crate::output::files::whole_file::{FileError, StagedFile, is_link, leftovers};
+use crate::output::tables::batch_results::{RESULTS, head};
 
 /// Files that are open at the same time.
 const OPEN: usize = 128;
@@ -30,264 +28,250 @@ pub struct Merged {
     pub results: PathBuf,
     /// The file of poses, where poses are kept.
     pub poses: Option<PathBuf>,
+    /// What ended commands left beside them.
+    pub leftovers: Vec<PathBuf>,
 }
 
-/// A shard with its pairs.
-struct Found {
-    folder: PathBuf,
-    record: ShardRecord,
-    pairs: Vec<ShardPair>,
+/// A pair of the batch: its shard, and where its row and its poses are in the shard's files.
+struct Place {
+    shard: usize,
+    is_done: bool,
+    row: Range,
+    poses: Option<Range>,
 }
 
 /// Merges the shards in some directories of a batch into `out`: `results.csv`, and `poses.csv.gz` where poses are kept.
 /// The bytes do not depend on how many shards there are, on their places or their order. With `partial` pairs and
-/// shards may be missing.
+/// shards may be missing. Other files of these names are replaced only with `force`.
 ///
 /// # Errors
-/// [`ShardError`] when there is no shard, when shards are of different batches or twice there, and when one is missing
-/// or not done.
-pub fn merge(directories: &[PathBuf], out: &Path, partial: bool) -> Result<Merged, ShardError> {
-    let mut shards: Vec<Found> = Vec::new();
-    for directory in directories {
-        for folder in folders(directory)? {
-            if let Some(record) = ShardRecord::read(&folder)? {
-                shards.push(found(folder, record)?);
+/// [`FileError`] when there is no shard, when shards are of different batches or twice there, when one is missing or not
+/// done, and when a file cannot be read or written.
+pub fn merge(
+    directories: &[PathBuf],
+    out: &Path,
+    (partial, force): (bool, bool),
+) -> Result<Merged, FileError> {
+    let folder_of =
+        |shard: Shard, directory: usize| directories[directory].join(SHARDS).join(shard.folder());
+    let mut shards: Vec<(Shard, usize)> = Vec::new();
+    let mut first: Option<BatchRecord> = None;
+    let mut pairs: BTreeMap<usize, Place> = BTreeMap::new();
+    for (shard, directory) in shards_in(directories)? {
+        let folder = &folder_of(shard, directory);
+        let Some(record) = BatchRecord::read(folder)? else {
+            continue;
+        };
+        let is_of_batch = first
+            .as_ref()
+            .is_none_or(|first| record.is_of_batch_of(first));
+        if record.shard != shard || !is_of_batch {
+            let beside = shards
+                .first()
+                .map_or(folder.clone(), |one| folder_of(one.0, one.1));
+            return Err(FileError::refused(
+                folder,
+                format!(
+                    "this shard is of other pairs or options, or by another version, than that in {}",
+                    beside.display()
+                ),
+                "merge only shards of one table of pairs, docked with the same options, into the same number of shards",
+            ));
+        }
+        let mut found = Index::of(folder, record.keep.has_poses())?.pairs;
+        for (place, (name, _)) in record.own.iter().enumerate() {
+            if let Some(pair) = found.remove(name) {
+                let place_of_pair = Place {
+                    shard: shards.len(),
+                    is_done: pair.is_done,
+                    row: pair.row,
+                    poses: pair.poses,
+                };
+                pairs.insert(shard.row(place), place_of_pair);
             }
         }
-    }
-    shards.sort_by_key(|shard| shard.record.shard);
-    let Some(first) = shards.first() else {
-        return Err(ShardError::wrong(
-            directories.first().map_or(Path::new(""), PathBuf::as_path),
-            "there are no shards of a batch",
-            "name the directory that `knotdock batch --shard` wrote to with -o",
-        ));
-    };
-    let record = first.record.clone();
-    check(&shards, &record, partial)?;
-
-    // A pair that failed and was docked afterwards has two rows, of which the last one counts.
-    let mut order: BTreeMap<usize, (usize, usize)> = BTreeMap::new();
-    for (number, shard) in shards.iter().enumerate() {
-        for (place, pair) in shard.pairs.iter().enumerate() {
-            order.insert(pair.row.row, (number, place));
+        if let Some(stray) = found.keys().min() {
+            return Err(FileError::refused(
+                &folder.join(RESULTS),
+                format!("there is a row of {stray}, which is no pair of shard {shard}"),
+                "remove the shard's folder, and dock it again",
+            ));
         }
+        shards.push((shard, directory));
+        let mut of_batch = record;
+        of_batch.own.clear();
+        first.get_or_insert(of_batch);
     }
-    let pairs = || {
-        order
-            .values()
-            .map(|&(shard, place)| (shard, &shards[shard].pairs[place]))
+    let Some(record) = first else {
+        return Err(no_shards(directories));
     };
-    let done = pairs().filter(|(_, pair)| pair.row.is_done()).count();
-    if order.len() < record.pairs && !partial {
-        let missing = record.pairs - order.len();
-        let is_short = |shard: &&Found| {
-            let own = (1..=record.pairs).filter(|&row| shard.record.shard.has(row));
-            own.into_iter().any(|row| !order.contains_key(&row))
-        };
-        let short = shards.iter().find(is_short).unwrap_or(first);
-        return Err(ShardError::wrong(
-            &short.folder,
-            format!(
-                "{missing} of {} pairs are not done, some of them of shard {}",
-                record.pairs, short.record.shard
-            ),
-            "run its `knotdock batch --shard` again, which goes on where it was, or pass --partial",
-        ));
+    if !partial {
+        let at = &directories[shards.first().map_or(0, |first| first.1)];
+        complete(&record, shards.iter().map(|one| one.0.index()), &pairs, at)?;
     }
-    let names = pairs().map(|(_, pair)| pair.row.name().to_lowercase());
-    check_places(out, record.keep.has_poses(), Some(&names.collect()))?;
-    let results = out.join(RESULTS);
-    write_whole(&results, |file| {
-        let mut table = TableWriter::new(file);
-        table.row(header())?;
-        for (_, pair) in pairs() {
-            table.row(&pair.row.fields)?;
-        }
-        table.flush()
-    })?;
-    let poses = record.keep.has_poses().then(|| out.join(POSES));
-    if let Some(path) = &poses {
-        write_whole(path, |file| {
-            file.write_all(&pose_rows::header()?)?;
+    if is_link(out) {
+        return Err(FileError::link(out));
+    }
+    fs::create_dir_all(out).map_err(|source| FileError::unwritable(out, source))?;
+    let copied = |name: &str, head: &[u8], part: fn(&Place) -> Option<Range>| {
+        let path = out.join(name);
+        let staged = StagedFile::own(&path, |file| {
+            file.write_all(head)?;
             let mut open: HashMap<usize, File> = HashMap::new();
-            for (number, pair) in pairs() {
-                let Some(range) = pair.poses else { continue };
-                if open.len() == OPEN && !open.contains_key(&number) {
+            for pair in pairs.values() {
+                let Some(range) = part(pair) else { continue };
+                if open.len() == OPEN && !open.contains_key(&pair.shard) {
                     open.clear();
                 }
-                let from = match open.entry(number) {
+                let from = match open.entry(pair.shard) {
                     Entry::Occupied(entry) => entry.into_mut(),
                     Entry::Vacant(entry) => {
-                        entry.insert(File::open(shards[number].folder.join(POSES))?)
+                        let (shard, directory) = shards[pair.shard];
+                        let from = open_own(&folder_of(shard, directory).join(name));
+                        entry.insert(from.map_err(io::Error::other)?)
                     }
                 };
                 copy_range(from, range, file)?;
             }
             Ok(())
         })?;
+        Ok::<_, FileError>((path, staged))
+    };
+    let left = [RESULTS, POSES].map(|name| leftovers(&out.join(name)));
+    let mut written = vec![copied(RESULTS, &head(), |pair| Some(pair.row))?];
+    if record.keep.has_poses() {
+        let header = pose_rows::header().map_err(|error| FileError::writing(out, error))?;
+        written.push(copied(POSES, &header, |pair| pair.poses)?);
     }
+    // Neither takes its place before both may.
+    let mut paths = Vec::new();
+    let mut changed = Vec::new();
+    for (path, staged) in written {
+        if !staged.is_there()? {
+            if !force && path.symlink_metadata().is_ok() {
+                return Err(FileError::refused(
+                    &path,
+                    "another file is already there",
+                    "choose another directory with -o, or pass --force to replace it",
+                ));
+            }
+            changed.push(staged);
+        }
+        paths.push(path);
+    }
+    changed.into_iter().try_for_each(StagedFile::place)?;
+    let done = pairs.values().filter(|pair| pair.is_done).count();
+    let mut paths = paths.into_iter();
     Ok(Merged {
-        shards: shards.iter().map(|shard| shard.record.shard).collect(),
-        counts: [record.pairs, done, order.len() - done],
-        results,
-        poses,
+        leftovers: left.concat(),
+        counts: [record.pairs, done, pairs.len() - done],
+        results: paths.next().unwrap_or_default(),
+        poses: paths.next(),
+        shards: shards.into_iter().map(|(shard, _)| shard).collect(),
     })
 }
 
-/// Refuses a directory in which the tables would take the place of something else: of a file that is no such table, and,
-/// where the `names` of the pairs are known, of a table with other pairs.
-///
-/// # Errors
-/// [`ShardError::Wrong`] and [`ShardError::Unreadable`].
-pub fn check_places(
-    out: &Path,
-    has_poses: bool,
-    names: Option<&HashSet<String>>,
-) -> Result<(), ShardError> {
-    const REMEDY: &str = "choose another directory with -o, or move the file away";
-    let results = out.join(RESULTS);
-    if !is_ours(&results) {
-        let message = "this is not a table of results of a batch";
-        return Err(ShardError::wrong(&results, message, REMEDY));
-    }
-    if let (Some(names), true) = (names, results.exists()) {
-        let table =
-            read_bounded_file(&results, MAX_POSES).map_err(ShardError::reading(&results))?;
-        let mut rows = csv::Reader::from_reader(table.as_slice()).into_records();
-        let is_other = |row: &csv::StringRecord| {
-            let name = unquoted(row.get(0).unwrap_or_default());
-            !names.contains(&name.to_lowercase())
+/// The shards in some directories, each with the number of its directory.
+fn shards_in(directories: &[PathBuf]) -> Result<BTreeMap<Shard, usize>, FileError> {
+    let mut shards: BTreeMap<Shard, usize> = BTreeMap::new();
+    for (number, directory) in directories.iter().enumerate() {
+        let place = directory.join(SHARDS);
+        if is_link(&place) {
+            return Err(FileError::link(&place));
+        }
+        let entries = match fs::read_dir(&place) {
+            Ok(entries) => entries,
+            Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
+            Err(error) => return Err(FileError::reading(&place, error)),
         };
-        if rows.any(|row| row.is_ok_and(|row| is_other(&row))) {
-            let message = "the table has results of other pairs";
-            return Err(ShardError::wrong(&results, message, REMEDY));
+        for entry in entries {
+            let entry = entry.map_err(|source| FileError::reading(&place, source))?;
+            let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
+            let name = entry.file_name();
+            let shard = name
+                .to_str()
+                .and_then(|name| name.replace("-of-", "/").parse().ok());
+            let Some(shard) = shard.filter(|shard: &Shard| is_folder && name == *shard.folder())
+            else {
+                continue;
+            };
+            if let Some(twice) = shards.insert(shard, number) {
+                let twice = directories[twice].display();
+                return Err(FileError::refused(
+                    &entry.path(),
+                    format!("shard {shard} is in {twice}, too"),
+                    "name each directory once",
+                ));
+            }
         }
     }
-    let poses = out.join(POSES);
-    if has_poses && poses.exists() && !is_of_poses(&poses) {
-        let message = "this is not a file of poses of a batch";
-        return Err(ShardError::wrong(&poses, message, REMEDY));
-    }
-    Ok(())
+    Ok(shards)
 }
 
-/// Whether a file begins as a file of poses does, or has no content.
-fn is_of_poses(path: &Path) -> bool {
-    let Ok(header) = pose_rows::header() else {
-        return false;
-    };
-    let mut start = Vec::new();
-    let read =
-        File::open(path).and_then(|file| file.take(header.len() as u64).read_to_end(&mut start));
-    read.is_ok() && (is_blank(&start) || start == header)
+fn no_shards(directories: &[PathBuf]) -> FileError {
+    FileError::refused(
+        directories.first().map_or(Path::new(""), PathBuf::as_path),
+        "there are no shards of a batch",
+        "name the directory that `knotdock batch --shard` wrote to with -o; a batch without --shard needs no merge",
+    )
 }
 
-/// The folders of a directory's shards, in the order of their names.
-fn folders(directory: &Path) -> Result<Vec<PathBuf>, ShardError> {
-    let place = directory.join(SHARDS);
-    let entries = match fs::read_dir(&place) {
-        Ok(entries) => entries,
-        Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Vec::new()),
-        Err(error) => return Err(ShardError::reading(&place)(error)),
-    };
-    let paths = entries.map(|entry| entry.map(|entry| entry.path()));
-    let paths: io::Result<Vec<PathBuf>> = paths.collect();
-    let mut paths = paths.map_err(ShardError::reading(&place))?;
-    // What begins with a dot is on its way there.
-    let is_hidden = |path: &PathBuf| {
-        let name = path.file_name().unwrap_or_default();
-        name.to_string_lossy().starts_with('.')
-    };
-    paths.retain(|path| path.is_dir() && !is_hidden(path));
-    paths.sort();
-    Ok(paths)
-}
-
-fn found(folder: PathBuf, record: ShardRecord) -> Result<Found, ShardError> {
-    let path = folder.join(RESULTS);
-    let bytes = read_bounded_file(&path, MAX_POSES).map_err(ShardError::reading(&path))?;
-    let rows = rows(&path, &bytes)?;
-    let pairs = if record.keep.has_poses() {
-        with_poses(&folder.join(POSES), rows)?.0
-    } else {
-        let none = |row| ShardPair { row, poses: None };
-        rows.into_iter().map(none).collect()
-    };
-    if let Some(stray) = pairs
-        .iter()
-        .find(|pair| !record.shard.has(pair.row.row) || pair.row.row > record.pairs)
-    {
-        return Err(ShardError::wrong(
-            &path,
-            format!(
-                "row {} of the table of pairs is not in shard {}",
-                stray.row.row, record.shard
-            ),
-            "remove the shard's folder, and dock it again",
-        ));
-    }
-    Ok(Found {
-        folder,
-        record,
-        pairs,
-    })
-}
-
-/// Refuses shards that do not make one batch.
-fn check(shards: &[Found], record: &ShardRecord, partial: bool) -> Result<(), ShardError> {
-    for pair in shards.windows(2) {
-        let [one, other] = pair else { continue };
-        if other.record.of_shard(record.shard) != *record
-            || other.record.shard.count() != record.shard.count()
-        {
-            return Err(ShardError::wrong(
-                &other.folder,
-                format!(
-                    "this shard is of other pairs or options, or by another version, than that in {}",
-                    shards[0].folder.display()
-                ),
-                "merge only shards of one table of pairs, docked with the same options, into the same number of shards",
-            ));
-        }
-        if one.record.shard == other.record.shard {
-            return Err(ShardError::wrong(
-                &other.folder,
-                format!(
-                    "shard {} is in {}, too",
-                    one.record.shard,
-                    one.folder.display()
-                ),
-                "name each directory once",
-            ));
-        }
-    }
-    let there: Vec<usize> = shards
-        .iter()
-        .map(|shard| shard.record.shard.index())
-        .collect();
-    let missing: Vec<String> = (1..=record.shard.count())
-        .filter(|index| !there.contains(index))
-        .map(|index| index.to_string())
-        .collect();
-    if !missing.is_empty() && !partial {
-        let folder = shards[0].folder.parent().unwrap_or(Path::new(""));
-        let first: Vec<String> = missing.iter().take(10).cloned().collect();
-        let more = if missing.len() > first.len() {
-            " ..."
-        } else {
-            ""
-        };
-        return Err(ShardError::wrong(
-            folder,
-            format!(
-                "{} of {} shards are missing: {}{more}",
-                missing.len(),
-                record.shard.count(),
-                first.join(", ")
-            ),
+/// Refuses a batch of which shards or pairs are missing.
+fn complete(
+    record: &BatchRecord,
+    there: impl Iterator<Item = usize>,
+    pairs: &BTreeMap<usize, Place>,
+    at: &Path,
+) -> Result<(), FileError> {
+    let count = record.shard.count();
+    let refused = |message: String, remedy: &str| Err(FileError::refused(at, message, remedy));
+    if let Some(missing) = gaps(there, count) {
+        return refused(
+            format!("shards {missing} of {count} are missing"),
             "dock them with `knotdock batch --shard`, or pass --partial",
-        ));
+        );
     }
-    Ok(())
+    match gaps(pairs.keys().copied(), record.pairs) {
+        Some(missing) => refused(
+            format!("pairs {missing} of {} are not done", record.pairs),
+            "run `knotdock batch --shard` of their shards again, which goes on where it was, or pass --partial",
+        ),
+        None => Ok(()),
+    }
+}
+
+/// Which of the numbers from 1 to `last` are not among some that rise, in words; `None` where all are.
+fn gaps(numbers: impl Iterator<Item = usize>, last: usize) -> Option<String> {
+    const SHOWN: usize = 10;
+    let mut gaps = Vec::new();
+    let mut next = 1;
+    for number in numbers.chain([last.saturating_add(1)]) {
+        match number.saturating_sub(next) {
+            0 => {}
+            1 => gaps.push(next.to_string()),
+            _ => gaps.push(format!("{next}-{}", number - 1)),
+        }
+        next = number.saturating_add(1);
+    }
+    let more = if gaps.len() > SHOWN { ", ..." } else { "" };
+    gaps.truncate(SHOWN);
+    (!gaps.is_empty()).then(|| gaps.join(", ") + more)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_missing_is_said_as_ranges() {
+        let gaps = |there: &[usize], last| gaps(there.iter().copied(), last);
+        assert_eq!(gaps(&[1, 2, 3], 3), None);
+        assert_eq!(gaps(&[2, 4, 8], 9).unwrap(), "1, 3, 5-7, 9");
+        assert_eq!(
+            gaps(&[], usize::MAX).unwrap(),
+            format!("1-{}", usize::MAX - 1)
+        );
+        let odd: Vec<usize> = (1..100).step_by(2).collect();
+        assert!(gaps(&odd, 100).unwrap().ends_with("18, 20, ..."));
+    }
 }

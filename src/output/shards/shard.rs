@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 /// One of several parts of a batch: every `count`-th pair, beginning with pair `index`. Both count from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
+#[serde(try_from = "String", into = "String")]
 pub struct Shard {
     index: usize,
     count: usize,
@@ -32,9 +32,31 @@ impl Shard {
         row >= 1 && (row - 1) % self.count == self.index - 1
     }
 
+    /// The row of the table that its pair of a place has; places count from 0, rows from 1.
+    pub fn row(self, place: usize) -> usize {
+        self.index + place * self.count
+    }
+
     /// Name of its folder.
     pub fn folder(self) -> String {
         format!("{:04}-of-{:04}", self.index, self.count)
+    }
+}
+
+/// Most shards of a batch.
+const MOST: usize = 1_000_000;
+
+impl TryFrom<String> for Shard {
+    type Error = String;
+
+    fn try_from(text: String) -> Result<Self, String> {
+        text.parse()
+    }
+}
+
+impl From<Shard> for String {
+    fn from(shard: Shard) -> Self {
+        shard.to_string()
     }
 }
 
@@ -45,11 +67,12 @@ impl FromStr for Shard {
         let parts = text.split_once('/');
         let numbers = parts.map(|(index, count)| (index.parse(), count.parse()));
         match numbers {
-            Some((Ok(index), Ok(count))) if (1..=count).contains(&index) => {
+            Some((Ok(index), Ok(count))) if (1..=count).contains(&index) && count <= MOST => {
                 Ok(Self { index, count })
             }
             _ => Err(
-                "write I/N: which of how many shards, such as 3/100, from 1/N to N/N".to_owned(),
+                "write I/N: which of how many shards, such as 3/100, from 1/N to N/N, N at most 1000000"
+                    .to_owned(),
             ),
         }
     }
@@ -75,8 +98,23 @@ mod tests {
                 assert_eq!(shards.iter().filter(|shard| shard.has(row)).count(), 1);
             }
             assert!(shards.iter().all(|shard| !shard.has(0)));
+            assert!(
+                shards
+                    .iter()
+                    .all(|shard| shard.has(shard.row(9)) && shard.has(shard.row(0)))
+            );
         }
-        for text in ["", "3", "0/4", "5/4", "1/0", "a/b", "1/2/3", "-1/2"] {
+        for text in [
+            "",
+            "3",
+            "0/4",
+            "5/4",
+            "1/0",
+            "a/b",
+            "1/2/3",
+            "-1/2",
+            "1/1000001",
+        ] {
             assert!(text.parse::<Shard>().is_err(), "{text}");
         }
         assert_eq!("3/100".parse::<Shard>().unwrap().folder(), "0003-of-0100");

@@ -1,16 +1,14 @@
 //! The results of a batch: one row a pair, with the best row of each pair's own table.
 
-use std::collections::HashSet;
 use std::path::Path;
 
 use csv::StringRecord;
 use serde_json::Value;
 
-use crate::bounded_read::{MAX_RECORD, MAX_TABLE, read_bounded_file};
-use crate::output::tables::cells::{TableWriter, unquoted_row};
+use crate::bounded_read::{MAX_RECORD, read_bounded_file};
+use crate::output::tables::cells::{TableWriter, unquoted};
 use crate::output::tables::fields::number;
 
-use crate::output::files::whole_file::{FileError, is_blank, write_whole};
 use crate::output::tables::poses::PoseTable;
 use crate::output::tables::poses_reader::PoseTableError;
 
@@ -40,8 +38,8 @@ pub struct PairResult {
     pub receptor: String,
     /// The ligand likewise.
     pub ligand: String,
-    /// What its run left, or why there is none; `None` while it waits.
-    pub outcome: Option<Result<RunSummary, String>>,
+    /// What its run left, or why there is none.
+    pub outcome: Result<RunSummary, String>,
 }
 
 /// Report of a batch on one run.
@@ -112,50 +110,17 @@ pub fn header() -> Vec<&'static str> {
     header
 }
 
-/// Whether a file may be replaced by a batch's results: there is none, it has their header, or it has no content.
-pub fn is_ours(path: &Path) -> bool {
-    let Ok(bytes) = read_bounded_file(path, MAX_TABLE) else {
-        return !path.exists();
-    };
-    let line = bytes.split(|&byte| byte == b'\n').next();
-    let line = line.unwrap_or_default().trim_ascii_end();
-    is_blank(&bytes) || line == header().join(",").as_bytes()
+/// The first line of the table.
+pub fn head() -> Vec<u8> {
+    line(&header())
 }
 
-/// Rows of earlier batches into the same directory, by other names than those of some pairs: they are kept as they
-/// stand.
-///
-/// # Errors
-/// What is wrong with the table, where one is there and cannot be read.
-pub fn rows_of_others(path: &Path, pairs: &[PairResult]) -> Result<Vec<StringRecord>, csv::Error> {
-    if !path.exists() {
-        return Ok(Vec::new());
-    }
-    let table = read_bounded_file(path, MAX_TABLE)?;
-    // What a power cut left without content is written anew.
-    if is_blank(&table) {
-        return Ok(Vec::new());
-    }
-    // Letters of either case are one where file systems think so.
-    let own: HashSet<String> = pairs.iter().map(|pair| pair.name.to_lowercase()).collect();
-    let mut rows: Vec<StringRecord> = csv::Reader::from_reader(table.as_slice())
-        .into_records()
-        .map(|row| row.map(|row| unquoted_row(&row)))
-        .collect::<Result<_, _>>()?;
-    rows.retain(|row| {
-        let name = row.get(0).unwrap_or_default();
-        !own.contains(&name.to_lowercase())
-    });
-    Ok(rows)
-}
-
-/// The fields of a pair, one a column.
-pub fn fields(result: &PairResult) -> Vec<String> {
+/// The row of a pair, one line.
+pub fn row(result: &PairResult) -> Vec<u8> {
     let none = RunSummary::default();
     let (status, error, run) = match &result.outcome {
-        None => ("pending", "", &none),
-        Some(Ok(run)) => (DONE, "", run),
-        Some(Err(error)) => ("failed", error.as_str(), &none),
+        Ok(run) => (DONE, "", run),
+        Err(error) => ("failed", error.as_str(), &none),
     };
     let count = |count: Option<u64>| count.map_or(String::new(), |n| n.to_string());
     let mut fields = vec![
@@ -168,29 +133,30 @@ pub fn fields(result: &PairResult) -> Vec<String> {
     fields.extend(run.counts.map(count));
     fields.extend(BEST.map(|name| run.best(name)));
     fields.push(count(run.first_acceptable));
-    fields
+    // So that a row that is cut short is seen to be.
+    for field in &mut fields {
+        *field = field.replace(['\n', '\r'], " ");
+    }
+    line(&fields)
 }
 
-/// Writes the table whole, in the order of the pairs, then the rows of `others`.
-///
-/// # Errors
-/// As [`write_whole`].
-pub fn write_results(
-    path: &Path,
-    results: &[PairResult],
-    others: &[StringRecord],
-) -> Result<(), FileError> {
-    write_whole(path, |file| {
-        let mut table = TableWriter::new(file);
-        table.row(header())?;
-        for result in results {
-            table.row(fields(result))?;
-        }
-        for row in others {
-            table.row(row)?;
-        }
-        table.flush()
-    })
+fn line<T: AsRef<str>>(cells: &[T]) -> Vec<u8> {
+    let mut bytes = Vec::new();
+    let mut table = TableWriter::new(&mut bytes);
+    // A vector takes whatever is written.
+    let _ = table.row(cells).and_then(|()| table.flush());
+    drop(table);
+    bytes
+}
+
+/// The name of a row's pair and whether it was docked; `None` for what is no row.
+pub fn name_and_status(line: &[u8]) -> Option<(String, bool)> {
+    let mut reader = csv::ReaderBuilder::new()
+        .has_headers(false)
+        .from_reader(line);
+    let mut record = StringRecord::new();
+    let is_row = reader.read_record(&mut record).ok()? && record.len() == header().len();
+    is_row.then(|| (unquoted(&record[0]).to_owned(), &record[3] == DONE))
 }
 
 #[cfg(test)]
@@ -229,36 +195,26 @@ mod tests {
     }
 
     #[test]
-    fn only_results_may_be_replaced() {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join(RESULTS);
-        assert!(is_ours(&path));
+    fn a_row_says_what_became_of_a_pair() {
         let failed = PairResult {
-            name: "a".to_owned(),
+            name: "=a".to_owned(),
             receptor: "a.pdb:A,B".to_owned(),
             ligand: "b.pdb".to_owned(),
-            outcome: Some(Err("no \"atoms\"\nat all".to_owned())),
+            outcome: Err("no \"atoms\"\nat all".to_owned()),
         };
-        write_results(&path, std::slice::from_ref(&failed), &[]).unwrap();
-        assert!(is_ours(&path));
-        let text = fs::read_to_string(&path).unwrap();
-        assert!(text.contains("\na,\"a.pdb:A,B\",b.pdb,failed,\"no \"\"atoms\"\"\nat all\",,"));
-        // A second batch keeps the rows of the first, but for pairs that are its own, too.
-        let mut other = failed.clone();
-        other.name = "b".to_owned();
-        let others = rows_of_others(&path, std::slice::from_ref(&other)).unwrap();
-        write_results(&path, &[other], &others).unwrap();
-        let rows = csv::Reader::from_path(&path).unwrap().into_records();
-        let names: Vec<String> = rows.map(|row| row.unwrap()[0].to_owned()).collect();
-        assert_eq!(names, ["b", "a"]);
-        assert_eq!(rows_of_others(&path, &[failed]).unwrap().len(), 1);
-        fs::write(&path, "name,value\n").unwrap();
-        assert!(!is_ours(&path));
-        // Found by hostile calls: a power cut left an empty table, which every later batch refused.
-        for empty in ["", "\0\0\0\0"] {
-            fs::write(&path, empty).unwrap();
-            assert!(is_ours(&path));
-            assert_eq!(rows_of_others(&path, &[]).unwrap().len(), 0);
-        }
+        let line = row(&failed);
+        let text = String::from_utf8(line.clone()).unwrap();
+        assert!(text.starts_with("'=a,\"a.pdb:A,B\",b.pdb,failed,\"no \"\"atoms\"\" at all\",,"));
+        assert_eq!(text.matches('\n').count(), 1);
+        assert_eq!(name_and_status(&line), Some(("=a".to_owned(), false)));
+        let docked = PairResult {
+            outcome: Ok(RunSummary::default()),
+            ..failed
+        };
+        assert_eq!(
+            name_and_status(&row(&docked)),
+            Some(("=a".to_owned(), true))
+        );
+        assert_eq!(name_and_status(b"name,value"), None);
     }
 }

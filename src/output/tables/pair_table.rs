@@ -6,6 +6,7 @@ use std::path::{Path, PathBuf};
 use csv::StringRecord;
 
 use crate::bounded_read::{MAX_PAIRS, read_bounded};
+use crate::output::files::checksum::sha256;
 use crate::output::tables::cells::unquoted;
 use crate::output::tables::csv_lines::line_of;
 use crate::output::tables::spreadsheet::{column_name, plain};
@@ -26,6 +27,16 @@ pub struct PairRow {
     pub ligand: String,
     /// Options of `knotdock dock` with their values, by the names of their columns; those without a value are left out.
     pub options: Vec<(String, String)>,
+}
+
+impl PairRow {
+    /// The beginning of SHA-256 of what it says, wherever it stands.
+    pub fn checksum(&self) -> String {
+        let said = (&self.name, &self.receptor, &self.ligand, &self.options);
+        let mut sum = sha256(format!("{said:?}").as_bytes());
+        sum.truncate(16);
+        sum
+    }
 }
 
 /// Why a table of pairs cannot be used.

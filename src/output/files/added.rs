@@ -1,0 +1,272 @@
+//! Files added to a run that is there, or to another folder.
+//!
+//! They are written in a folder of their own first, and each takes its place by one rename when all of them are on the
+//! device. A file that is there with the same content stays. One that differs is replaced if the run's records show
+//! that nobody has changed it, or on request. What is added to a run is listed in its `added.json`.
+
+use std::collections::BTreeMap;
+use std::fs::File;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use serde_json::{Value, json};
+
+use crate::bounded_read::{MAX_RECORD, read_bounded_file};
+
+use super::checksum::sha256_of_file;
+use super::disk;
+use super::lock::Lock;
+use super::seal::REPORT;
+use super::staging::{ENSEMBLE, Made, OwnFiles, Stage, is_of_us, is_run, locked, name_of};
+use super::whole_file::{FileError, is_link, leftovers, parent, to_json, write_whole};
+
+/// The list of what was added to a run, with checksums as `files`.
+pub const ADDED: &str = "added.json";
+
+/// Files that are being added.
+#[derive(Debug)]
+pub struct Addition {
+    /// Where they go.
+    folder: PathBuf,
+    stage: Stage,
+    /// The run, without links, where they go into it.
+    run: Option<PathBuf>,
+    /// What commands that were ended left beside the run or the folder.
+    pub leftovers: Vec<PathBuf>,
+    _lock: Option<Lock>,
+    made: Made,
+}
+
+impl Addition {
+    /// Files for a folder. Where it lies in the directory of `run`, that is locked.
+    ///
+    /// # Errors
+    /// [`FileError`] where the folder is a link or cannot be made, and where another command writes to the run.
+    pub fn open(folder: &Path, run: Option<&Path>) -> Result<Self, FileError> {
+        let plain: PathBuf = folder.components().collect();
+        if is_link(&plain) {
+            return Err(FileError::link(folder));
+        }
+        let unwritable = |source: io::Error| FileError::unwritable(folder, source);
+        let run = run.filter(|run| match (resolved(&plain), resolved(run)) {
+            (Some(folder), Some(run)) => folder.starts_with(run),
+            _ => false,
+        });
+        let (mut place, mut made, mut lock) = (None, Made::default(), None);
+        if let Some(run) = run {
+            let (found, above, held) = locked(run)?;
+            (place, made, lock) = (Some(found), above, Some(held));
+        }
+        made.0
+            .extend(disk::create_dir_all(&plain).map_err(unwritable)?);
+        // Beside a run, so that nothing but a run's files is ever in it.
+        let inner = plain.join("files");
+        let beside = place.as_deref().unwrap_or(&inner);
+        Ok(Self {
+            leftovers: leftovers(beside),
+            stage: Stage::beside(beside, folder)?,
+            folder: plain,
+            run: place,
+            _lock: lock,
+            made,
+        })
+    }
+
+    /// What is written to.
+    pub fn stage(&self) -> &Stage {
+        &self.stage
+    }
+
+    /// Moves the files into their places. With `force` those that are there are replaced, though they were edited.
+    ///
+    /// # Errors
+    /// [`FileError`]; of files that must not be replaced before anything is moved.
+    pub fn place(mut self, force: bool) -> Result<(), FileError> {
+        let failed = |source| FileError::writing(&self.folder, source);
+        let new = self.stage.folder();
+        disk::sync_tree(new).map_err(failed)?;
+        let mut own = OwnFiles::default();
+        let mut inside = PathBuf::new();
+        if let Some(run) = &self.run {
+            own.add(run, Path::new("")).map_err(failed)?;
+            let folder = self.folder.canonicalize().map_err(failed)?;
+            inside = folder.strip_prefix(run).unwrap_or(Path::new("")).to_owned();
+        }
+        let mut moves = Vec::new();
+        let mut added = BTreeMap::new();
+        for name in disk::tree(new).map_err(failed)? {
+            let (from, to) = (new.join(&name), self.folder.join(&name));
+            let checksum = sha256_of_file(&from).map_err(failed)?;
+            let in_run = inside.join(&name);
+            let is_own = |run: &PathBuf| own.holds(run, &in_run).unwrap_or(false);
+            let may_replace = force || self.run.as_ref().is_some_and(is_own);
+            if is_to_move(&to, &checksum, may_replace)? {
+                moves.push((from, to));
+            }
+            // A report has its own seal; with its times it would differ from call to call.
+            if name != Path::new(REPORT) {
+                added.insert(name_of(&in_run), checksum);
+            }
+        }
+        // An ensemble that is not finished has no record yet, and its own will list these.
+        if let Some(run) = &self.run
+            && !moves.is_empty()
+            && is_run(run)
+        {
+            self.note(run, added)?;
+        }
+        // A record comes last: where it is, all is.
+        moves.sort_by_key(|(_, to)| to.file_name() == Some(ENSEMBLE.as_ref()));
+        for (from, to) in &moves {
+            let moved = disk::create_dir_all(to.parent().unwrap_or(&self.folder))
+                .and_then(|_| match to.symlink_metadata() {
+                    Ok(there) => disk::set_permissions(from, there.permissions())
+                        .and_then(|()| disk::rename(from, to)),
+                    Err(_) => disk::rename_new(from, to),
+                })
+                .and_then(|()| disk::sync(to.parent().unwrap_or(&self.folder)));
+            moved.map_err(|source| FileError::writing(to, source))?;
+        }
+        self.made.0.clear();
+        Ok(())
+    }
+
+    /// Adds files to the list of those that were added to a run. It comes before them: a file that is listed and not
+    /// there does no harm.
+    fn note(&self, run: &Path, added: BTreeMap<String, String>) -> Result<(), FileError> {
+        let path = run.join(ADDED);
+        if path.symlink_metadata().is_ok() && !is_of_us(&path) {
+            let message = "this is no list of what was added to a run";
+            return Err(FileError::refused(&path, message, "move it away"));
+        }
+        let earlier = read_bounded_file(&path, MAX_RECORD).unwrap_or_default();
+        let earlier: Value = serde_json::from_slice(&earlier).unwrap_or_default();
+        let mut files: BTreeMap<String, Value> = BTreeMap::new();
+        for (name, sum) in earlier["files"].as_object().into_iter().flatten() {
+            files.insert(name.clone(), sum.clone());
+        }
+        files.extend(added.into_iter().map(|(name, sum)| (name, sum.into())));
+        let record = json!({ "program": "knotdock", "files": files });
+        self.stage.write(ADDED, |stream| to_json(stream, &record))?;
+        let written = self.stage.folder().join(ADDED);
+        disk::sync(&written)
+            .and_then(|()| disk::rename(&written, &path))
+            .map_err(|source| FileError::writing(&path, source))
+    }
+}
+
+/// Writes a file that the user named, whole; into a run's directory as an addition. What ended commands left there.
+///
+/// # Errors
+/// [`FileError`].
+pub fn write_named(
+    path: &Path,
+    fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
+) -> Result<Vec<PathBuf>, FileError> {
+    let folder = parent(path);
+    let (Some(name), true) = (path.file_name(), is_run(folder) && !is_link(path)) else {
+        return write_whole(path, fill).map(|()| Vec::new());
+    };
+    let mut addition = Addition::open(folder, Some(folder))?;
+    addition.stage.write(&name.to_string_lossy(), fill)?;
+    let leftovers = std::mem::take(&mut addition.leftovers);
+    addition.place(true).map(|()| leftovers)
+}
+
+/// Copies files into a run's directory as additions.
+///
+/// # Errors
+/// [`FileError`].
+pub fn add_files(run: &Path, files: &[PathBuf]) -> Result<(), FileError> {
+    let addition = Addition::open(run, Some(run))?;
+    for path in files {
+        let mut file = File::open(path).map_err(|source| FileError::reading(path, source))?;
+        let name = path.file_name().unwrap_or_default().to_string_lossy();
+        addition
+            .stage
+            .write(&name, |copy| io::copy(&mut file, copy).map(drop))?;
+    }
+    addition.place(false)
+}
+
+/// A path without links, as far as it is there.
+fn resolved(path: &Path) -> Option<PathBuf> {
+    let whole = std::path::absolute(path).ok()?;
+    let mut above = whole.ancestors();
+    above.find_map(|above| {
+        Some(
+            above
+                .canonicalize()
+                .ok()?
+                .join(whole.strip_prefix(above).ok()?),
+        )
+    })
+}
+
+/// Whether a file of a checksum is to be moved to a place: not where it is there already.
+fn is_to_move(to: &Path, checksum: &str, may_replace: bool) -> Result<bool, FileError> {
+    let Ok(there) = to.symlink_metadata() else {
+        return Ok(true);
+    };
+    if !there.is_file() {
+        return Err(FileError::refused(
+            to,
+            format!("{} is there and is no regular file", to.display()),
+            "move it away, or choose another directory with -o",
+        ));
+    }
+    let found = sha256_of_file(to).map_err(|source| FileError::unwritable(to, source))?;
+    if found != checksum && !may_replace {
+        return Err(FileError::refused(
+            to,
+            format!("{} is there and is not what would be written", to.display()),
+            "move the file away, choose another directory with -o, or pass --force to replace it",
+        ));
+    }
+    Ok(found != checksum)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn add(folder: &Path, text: &str, force: bool) -> Result<(), FileError> {
+        let addition = Addition::open(folder, None)?;
+        let stage = addition.stage();
+        stage.write("rank_0001.pdb", |file| file.write_all(text.as_bytes()))?;
+        stage.write("rank_0002.pdb", |file| file.write_all(b"second"))?;
+        addition.place(force)
+    }
+
+    fn names(folder: &Path) -> usize {
+        fs::read_dir(folder).unwrap().count()
+    }
+
+    /// Found by hostile calls: a complex that a user had edited was overwritten, and one behind a link.
+    #[test]
+    fn a_changed_complex_or_a_link_is_not_overwritten() {
+        let root = tempfile::tempdir().unwrap();
+        let folder = root.path().join("new/out");
+        add(&folder, "first", false).unwrap();
+        add(&folder, "first", false).unwrap();
+        let first = folder.join("rank_0001.pdb");
+        fs::write(&first, "edited").unwrap();
+        fs::remove_file(folder.join("rank_0002.pdb")).unwrap();
+        assert!(add(&folder, "first", false).unwrap_err().is_input());
+        assert_eq!(fs::read_to_string(&first).unwrap(), "edited");
+        assert_eq!(names(&folder), 1, "nothing is moved before all are checked");
+        add(&folder, "first", true).unwrap();
+        assert_eq!(fs::read_to_string(&first).unwrap(), "first");
+        assert_eq!(names(&folder), 2);
+        #[cfg(unix)]
+        {
+            fs::remove_file(&first).unwrap();
+            std::os::unix::fs::symlink(root.path().join("thesis"), &first).unwrap();
+            for force in [false, true] {
+                assert!(add(&folder, "first", force).unwrap_err().is_input());
+            }
+            assert!(!root.path().join("thesis").exists());
+        }
+    }
+}

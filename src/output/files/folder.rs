@@ -1,0 +1,80 @@
+//! Files of a folder that is this program's own: read without following links, waiting for pipes or taking more than a
+//! bound.
+
+use std::fs::File;
+use std::io::{self, BufRead, Read};
+use std::path::Path;
+
+use super::disk;
+use super::whole_file::FileError;
+
+/// Most bytes of a line.
+pub const MAX_LINE: usize = 1 << 20;
+
+/// The names of what is in a folder, in their order.
+///
+/// # Errors
+/// [`FileError`] when it cannot be read.
+pub fn names_in(folder: &Path) -> Result<Vec<String>, FileError> {
+    let entries = disk::entries(folder).map_err(|source| FileError::unwritable(folder, source))?;
+    let names = entries.iter().filter_map(|(path, _)| path.file_name());
+    Ok(names
+        .map(|name| name.to_string_lossy().into_owned())
+        .collect())
+}
+
+/// Opens a file to be read.
+///
+/// # Errors
+/// [`FileError`] where it is no file, such as a link or a pipe, and where it cannot be read.
+pub fn open_own(path: &Path) -> Result<File, FileError> {
+    disk::open(path, File::options().read(true)).map_err(|source| match source.kind() {
+        io::ErrorKind::PermissionDenied => FileError::reading(path, source),
+        _ => FileError::refused(
+            path,
+            format!("cannot read {}: {source}", path.display()),
+            "move it away, or choose another directory",
+        ),
+    })
+}
+
+/// Reads a file of at most `limit` bytes.
+///
+/// # Errors
+/// As [`open_own`], and [`FileError`] for one that is larger.
+pub fn read_own(path: &Path, limit: u64) -> Result<Vec<u8>, FileError> {
+    let mut bytes = Vec::new();
+    let read = open_own(path)?.take(limit + 1).read_to_end(&mut bytes);
+    read.map_err(|source| FileError::reading(path, source))?;
+    if bytes.len() as u64 > limit {
+        let message = format!("{} has more than {limit} bytes", path.display());
+        return Err(FileError::refused(
+            path,
+            message,
+            "move it away, or choose another directory",
+        ));
+    }
+    Ok(bytes)
+}
+
+/// Reads the next line without its end; false where there is none that is whole.
+///
+/// # Errors
+/// What the system says, and [`io::ErrorKind::FileTooLarge`] for a line of more than a megabyte.
+pub fn next_line(file: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<bool> {
+    line.clear();
+    let count = file
+        .by_ref()
+        .take(MAX_LINE as u64 + 1)
+        .read_until(b'\n', line)?;
+    if line.pop_if(|last| *last == b'\n').is_some() {
+        return Ok(true);
+    }
+    match count > MAX_LINE {
+        true => Err(io::Error::new(
+            io::ErrorKind::FileTooLarge,
+            "a line has more than a megabyte",
+        )),
+        false => Ok(false),
+    }
+}

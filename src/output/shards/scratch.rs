@@ -1,0 +1,92 @@
+//! A folder on a disk that is near, in which the files of a batch grow until it is done.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use super::record::{BatchRecord, RECORD};
+use super::{ATTEMPTS, POSES};
+use crate::output::files::checksum::sha256;
+use crate::output::files::folder::open_own;
+use crate::output::files::whole_file::{FileError, StagedFile, is_link};
+use crate::output::tables::batch_results::RESULTS;
+
+/// The growing files, in the order in which they are copied: a row comes after the poses that it stands for.
+const FILES: [&str; 3] = [POSES, RESULTS, ATTEMPTS];
+
+/// A folder in which a batch is worked on, and its place, whose lock is held.
+#[derive(Debug)]
+pub struct Scratch {
+    folder: PathBuf,
+    place: PathBuf,
+}
+
+impl Scratch {
+    /// A folder in `scratch` for the batch of a place. It begins as whichever of the two has gone further.
+    ///
+    /// # Errors
+    /// [`FileError`] where a folder of this name is another's, and where a file cannot be read or written.
+    pub fn open(scratch: &Path, place: &Path, record: &BatchRecord) -> Result<Self, FileError> {
+        let unwritable = |source: io::Error| FileError::unwritable(scratch, source);
+        fs::create_dir_all(scratch).map_err(unwritable)?;
+        let place = place.canonicalize().map_err(unwritable)?;
+        // Places of the same name are told apart by where they are.
+        let sum = sha256(place.to_string_lossy().as_bytes());
+        let name = place.file_name().unwrap_or_default().to_string_lossy();
+        let folder = scratch.join(format!("knotdock-{}-{name}", &sum[..12]));
+        let taken = "the scratch folder is not empty and not this batch's";
+        let taken = || {
+            Err(FileError::refused(
+                &folder,
+                taken,
+                "remove it, or name another --scratch",
+            ))
+        };
+        if is_link(&folder) {
+            return Err(FileError::link(&folder));
+        }
+        fs::create_dir_all(&folder).map_err(unwritable)?;
+        match BatchRecord::read(&folder)? {
+            Some(found) if found == *record => {}
+            None if BatchRecord::others_in(&folder)?.is_none() => {
+                record.write(&folder)?;
+            }
+            _ => return taken(),
+        }
+        let length =
+            |folder: &Path| fs::metadata(folder.join(RESULTS)).map_or(0, |found| found.len());
+        if length(&place) > length(&folder) {
+            copy(&place, &folder)?;
+        }
+        Ok(Self { folder, place })
+    }
+
+    /// Where to work.
+    pub fn folder(&self) -> &Path {
+        &self.folder
+    }
+
+    /// Copies the files to their place, each whole, and removes them here.
+    ///
+    /// # Errors
+    /// [`FileError`]; the files are still here then.
+    pub fn copy_out(self) -> Result<(), FileError> {
+        copy(&self.folder, &self.place)?;
+        for name in FILES.into_iter().chain([RECORD]) {
+            // What stays is found by the next call, or is in nobody's way.
+            let _ = fs::remove_file(self.folder.join(name));
+        }
+        let _ = fs::remove_dir(&self.folder);
+        Ok(())
+    }
+}
+
+fn copy(from: &Path, to: &Path) -> Result<(), FileError> {
+    for name in FILES {
+        if from.join(name).symlink_metadata().is_ok() {
+            let mut file = open_own(&from.join(name))?;
+            StagedFile::own(&to.join(name), |copy| io::copy(&mut file, copy).map(drop))?.place()?;
+        }
+    }
+    Ok(())
+}
