@@ -7,7 +7,7 @@ use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
 use std::path::Path;
 
-use crate::dock::memory::size::in_words;
+use crate::memory_size::in_words;
 
 /// Most bytes of a file of options and of a cost model: both are written by hand or hold a few numbers.
 pub const MAX_OPTIONS: u64 = 1 << 20;

@@ -1,6 +1,6 @@
 //! Why a search was refused or failed, and what to do about it.
 
-use crate::dock::memory::size::{as_size, in_words};
+use crate::memory_size::{as_size, in_words};
 use crate::predictions::PredictionError;
 use crate::progress::Ended;
 use crate::restraints::{Needed, RestraintFileError};

@@ -37,8 +37,8 @@ pub mod error;
 pub mod evaluate;
 pub mod geometry;
 pub mod interface;
+pub mod memory_size;
 pub mod mesh;
-pub mod named_columns;
 pub mod options;
 pub mod output;
 pub mod plain_path;
@@ -58,6 +58,7 @@ mod shell_word;
 pub mod side_chains;
 pub mod signals;
 pub mod system_limits;
+pub mod table_text;
 #[cfg(test)]
 mod test_molecules;
 pub mod threads;

@@ -10,7 +10,7 @@
 use crate::engine::Plan;
 use crate::engine::ReceptorSpectra;
 use crate::engine::receptor_spectra::LigandFunctions;
-use crate::exact::PoseGradient;
+use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
 use crate::terms::effect::Effect;
 use crate::transform::modes::{ModeSet, place};

@@ -1,6 +1,22 @@
 //! Small rigid moves of one body against another, and derivatives of an energy by them.
 
+use knotdock_structures::Knots;
 use nalgebra::{Matrix3, Matrix6, UnitQuaternion, Vector3, Vector6};
+
+/// Gradient of a score: per Å of translation, and per radian of rotation about the ligand's centre.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct PoseGradient {
+    /// dG / dt.
+    pub force: Vector3<f64>,
+    /// dG / d omega, for R -> `exp([omega]x)` R about the ligand's centre.
+    pub torque: Vector3<f64>,
+}
+
+/// Middle of the bounding box, in Å: exact under scaling by powers of two, and within a rounding error under shifts.
+pub fn center(knots: &Knots) -> Vector3<f64> {
+    let (low, high) = knots.bounds();
+    Vector3::from([0, 1, 2].map(|axis| low[axis] + 0.5 * (high[axis] - low[axis])))
+}
 
 /// A rigid move of the ligand relative to the receptor: an atom at `a` from the interface's centre goes to
 /// `turn a + shift`.

@@ -1,9 +1,10 @@
 #!/usr/bin/env python3
-"""Check that no two files of a crate import each other, directly or through others.
+"""Check that no two folders of a crate import each other, directly or through others, nor two files.
 
 usage: import_circles.py [--graph]      from anywhere in the repository
 
-Nothing outside of `cli` imports the command line either. An import leads to the file that defines the name: a module's
+A folder is one at the top of a crate; a file there is one by itself. Nothing outside of `cli` imports the command line
+either. An import leads to the file that defines the name: a module's
 `pub use` is followed, and is no import of its own. Test modules are left out. A circle is allowed where all its files
 are one module and its own submodules (a type and its split-out implementation). --graph prints the imports between
 folders of the main crate instead.
@@ -157,14 +158,21 @@ def main():
     for name, folder in CRATES.items():
         crate = Crate(name, folder)
         graph = crate.imports()
-        if "--graph" in sys.argv:
-            folders = {}
-            for module, targets in graph.items():
-                for target in targets:
-                    if module[:1] != target[:1] and module and target:
-                        folders.setdefault((module[0], target[0]), []).append("::".join(module))
-            for (source, target), modules in sorted(folders.items()):
+        folders = {}
+        for module, targets in graph.items():
+            for target in targets:
+                of_tests = any(part.startswith("test") for part in module + target)
+                if module[:1] != target[:1] and module and target and not of_tests:
+                    folders.setdefault(module[0], {}).setdefault(target[0], []).append("::".join(module))
+        for source, targets in sorted(folders.items() if "--graph" in sys.argv else ()):
+            for target, modules in sorted(targets.items()):
                 print(f"{name}: {source} -> {target} ({len(modules)}: {', '.join(sorted(modules)[:4])})")
+        for part in circles({source: set(targets) for source, targets in folders.items()}):
+            failed = True
+            print(f"{name}: these folders import each other in a circle: {', '.join(part)}")
+            for source in part:
+                for target in set(folders.get(source, ())) & set(part):
+                    print(f"    {source} imports {target} in {', '.join(sorted(folders[source][target]))}")
         for module, targets in graph.items():
             if module[:1] != ("cli",) and any(target[:1] == ("cli",) for target in targets):
                 failed = True

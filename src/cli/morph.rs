@@ -260,7 +260,7 @@ fn result(
 
 fn refused(error: &MorphologyError) -> Failure {
     let MorphologyError::Memory { needed, .. } = error;
-    let least = crate::dock::memory::size::as_size(crate::dock::memory::size::named(*needed));
+    let least = crate::memory_size::as_size(crate::memory_size::named(*needed));
     Failure::input(error).remedy(format!(
         "use a coarser --grid or --complement-grid, or fewer poses, or allow at least --memory {least}"
     ))

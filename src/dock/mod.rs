@@ -2,7 +2,6 @@
 
 mod effect_costs;
 pub mod effect_decisions;
-pub mod flexible_regions;
 pub mod memory;
 pub mod outcome;
 pub mod pair;

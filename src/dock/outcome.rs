@@ -1,55 +1,14 @@
 //! Outcome of a docking run: ranked poses, the plan it followed, the errors it measured and what it cost.
 
 use crate::options::Stopped;
-use crate::rank::sharp::{Evidence, SharpFinding, SharpPose};
+use crate::rank::ranking::RankedPose;
+use crate::rank::sharp::{Evidence, SharpFinding};
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
-use knotdock_scoring::exact::{ScoreTerms, ShapeParts};
+use knotdock_scoring::exact::ScoreTerms;
 use knotdock_scoring::peaks::Peak;
-use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::Effect;
-use knotdock_scoring::terms::pose::TermValues;
 use serde::Serialize;
-
-/// One row of `poses.csv`.
-#[derive(Clone, Debug, PartialEq)]
-pub struct RankedPose {
-    /// From the ligand's file frame to the receptor's.
-    pub pose: Pose,
-    /// The score that orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
-    pub score: f64,
-    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
-    pub search_score: f64,
-    /// 1-based cluster number, best cluster first.
-    pub cluster: Option<usize>,
-    /// Number of poses in that cluster.
-    pub cluster_size: Option<usize>,
-    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at
-    /// least the best pose's.
-    pub cluster_score: Option<f64>,
-    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the ascent.
-    pub refined: bool,
-    /// Index in the rotation set of the grid pose that this row came from.
-    pub rotation: usize,
-    /// Score of that grid pose as the fast path computed it.
-    pub score_grid: f64,
-    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the
-    /// effect is off.
-    pub terms: [Option<f64>; Effect::ALL.len()],
-    /// Slices and unfiltered score of shape at `pose`; `None` without `--diagnostics`.
-    pub shape: Option<ShapeParts>,
-    /// Weighted values of the pose terms at `pose`, by id.
-    pub pose_terms: TermValues,
-    /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
-    pub other_copies: Option<f64>,
-    /// Its sharp fit; `None` where none was looked for.
-    pub sharp: Option<SharpPose>,
-    /// Sum that ranks poses: `search_score`, the pose terms, `other_copies` and the score of the sharp fit.
-    pub pose_score: f64,
-    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not
-    /// differ.
-    pub z_score: Option<f64>,
-}
 
 /// The fast path's error as measured in this run, relative to the best exact score; infinite where no pose scores
 /// anything.

@@ -12,7 +12,7 @@ use crate::dock::stopwatch::timed;
 use crate::error::SearchError;
 use crate::mesh::samplers::SamplerName;
 use crate::mesh::shape::Shape;
-use crate::mesh::{MeshOptions, MeshPair, MeshSceneError, sample_pair};
+use crate::mesh::{CLUSTER_RADIUS, MeshOptions, MeshPair, MeshSceneError, sample_pair};
 use crate::options::{DockOptions, SampleWeights};
 
 /// Two bodies, the receptor first.
@@ -179,5 +179,30 @@ impl<'a> Preparer<'a> {
         )?);
         self.sampled.push((wanted, Arc::clone(&sampling)));
         Ok(sampling)
+    }
+}
+
+/// Which options that follow from the sampling were given, beside the offset.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct GivenLengths {
+    /// The resolution.
+    pub resolution: bool,
+    /// The radius of clusters.
+    pub cluster_radius: bool,
+    /// The exponent of the bump function.
+    pub alpha: bool,
+}
+
+/// The defaults of options that follow from the sampling of meshes, for what was not given.
+pub fn sampled_defaults(meshes: &MeshPair, options: &mut DockOptions, given: GivenLengths) {
+    options.kernel.offset = meshes.offset;
+    if !given.alpha {
+        options.kernel.alpha = meshes.sampler.alpha;
+    }
+    if !given.resolution {
+        options.kernel.resolution = meshes.sampler.resolution * meshes.offset;
+    }
+    if !given.cluster_radius {
+        options.ranking.cluster_radius = CLUSTER_RADIUS * meshes.offset;
     }
 }

@@ -1,7 +1,6 @@
 //! The plan of a docking run: engine plan, rotations, and the memory that it will take.
 
 use crate::dock::effect_decisions::Decision;
-use crate::dock::flexible_regions::FlexibleRegions;
 use crate::dock::memory::MemoryPlan;
 use crate::dock::memory::stages::MemoryStage;
 use crate::dock::scene::{LengthUnit, Scene};
@@ -9,6 +8,7 @@ use crate::error::SearchError;
 use crate::options::{DockOptions, REFINED_BY_SHAPE};
 use crate::pose_space::PoseSpace;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
+use crate::priors::flexible_regions::FlexibleRegions;
 use crate::priors::restrained::Restrained;
 use crate::rank::rescoring::Rescoring;
 use crate::rank::sharp::SharpInputs;

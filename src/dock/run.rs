@@ -11,7 +11,7 @@ use crate::pose_space::rotations::RotationGroup;
 use crate::progress::Progress;
 use crate::rank::candidates::{Candidate, candidates, clusters_of, deduplicated, merge};
 use crate::rank::cluster::RigidBody;
-use crate::rank::ranking::{PoseScorer, Ranking, cluster_temperature, report};
+use crate::rank::ranking::{PoseScorer, Ranking, report};
 use crate::rank::sharp::{optima, settle};
 use crate::rank::time_left::poses_in_time;
 use crate::search::coarse_to_fine::{FineSearched, search_finer};
@@ -146,7 +146,7 @@ fn dock_in<T: Real>(
         rescorer: rescorer.as_ref(),
         on,
         space: &plan.search.space,
-        cluster_temperature: cluster_temperature(plan.unit),
+        cluster_temperature: plan.unit.cluster_temperature(),
         diagnostics: plan.options.output.diagnostics,
     };
     let ranking = report(

@@ -1,12 +1,12 @@
 //! The scene of a docking run: two labelled bodies with the terms that act between them.
 
 use crate::dock::effect_decisions::{self, Decision};
-use crate::dock::flexible_regions::FlexibleRegions;
 use crate::error::SearchError;
 use crate::mesh::MeshPair;
 use crate::options::{DockOptions, SharpChoice};
 use crate::priors;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
+use crate::priors::flexible_regions::FlexibleRegions;
 use crate::priors::restrained::Restrained;
 use crate::priors::restraints::Restraints;
 use crate::rank::rescoring::Rescoring;
@@ -27,6 +27,16 @@ pub enum LengthUnit {
     Angstrom,
     /// Meshes: whatever the two files are in.
     File,
+}
+
+impl LengthUnit {
+    /// T of the clusters' scores as a share of the run's best score, by what is docked.
+    pub(crate) fn cluster_temperature(self) -> f64 {
+        match self {
+            Self::Angstrom => 0.1,
+            Self::File => 0.0,
+        }
+    }
 }
 
 impl std::fmt::Display for LengthUnit {

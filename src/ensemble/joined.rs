@@ -10,7 +10,6 @@ use knotdock_scoring::se3::Pose;
 
 use crate::dock::scene::LengthUnit;
 use crate::rank::cluster::{RigidBody, greedy};
-use crate::rank::ranking::cluster_temperature;
 
 /// A row of a member's table.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -49,7 +48,7 @@ pub fn join(rows: &[MemberRow], body: &RigidBody, radius: f64, every_pose: bool)
     let clusters = greedy(body, &poses, radius);
     let soft = rows.iter().map(|row| row.pose_score - row.sharp);
     let best = soft.reduce(f64::max).unwrap_or(0.0).abs();
-    let share = cluster_temperature(LengthUnit::Angstrom);
+    let share = LengthUnit::Angstrom.cluster_temperature();
     let temperature = (share * best).max(f64::MIN_POSITIVE);
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut scores = vec![Vec::new(); count];

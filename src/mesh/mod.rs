@@ -16,6 +16,7 @@
 pub mod samplers;
 pub mod shape;
 
+use clap::ValueEnum;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::numeric::Bump;
@@ -24,11 +25,10 @@ use knotdock_structures::sampling::feature_size::feature_size;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::weights::FittedWeights;
 use knotdock_structures::sampling::{Ball, SampleError};
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 
 use crate::mesh::samplers::{BallsToWeigh, PartToSample, Sampler, SamplerName, union};
 use crate::mesh::shape::Shape;
-use crate::options::{DockOptions, SampleWeights};
 
 /// Default radius of clusters in offsets: that of molecules.
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
@@ -36,6 +36,17 @@ pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
 const ANGSTROM: f64 = 1.0 / 2.2;
 /// Longest edges of a bounding box that single precision carries through the search.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
+
+/// Weights of a mesh's balls.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[serde(rename_all = "lowercase")]
+pub enum SampleWeights {
+    /// Such that the summed bumps come closest to one inside and to zero outside.
+    #[default]
+    Fitted,
+    /// One each.
+    Unit,
+}
 
 /// Options on sampling two meshes. Lengths in the files' unit.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -388,29 +399,4 @@ impl MeshPair {
     pub fn skin(&self) -> Option<f64> {
         Some(self.sampler.skin? * self.offset)
     }
-
-    /// The defaults of options that follow from the sampling, for what was not given.
-    pub fn defaults(&self, options: &mut DockOptions, given: GivenLengths) {
-        options.kernel.offset = self.offset;
-        if !given.alpha {
-            options.kernel.alpha = self.sampler.alpha;
-        }
-        if !given.resolution {
-            options.kernel.resolution = self.sampler.resolution * self.offset;
-        }
-        if !given.cluster_radius {
-            options.ranking.cluster_radius = CLUSTER_RADIUS * self.offset;
-        }
-    }
-}
-
-/// Which options that follow from the sampling were given, beside the offset.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GivenLengths {
-    /// The resolution.
-    pub resolution: bool,
-    /// The radius of clusters.
-    pub cluster_radius: bool,
-    /// The exponent of the bump function.
-    pub alpha: bool,
 }

@@ -7,10 +7,13 @@ use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
 use super::values::number;
+use crate::options::membrane::MembraneChoice;
 use crate::predictions::PredictionSource;
-use crate::priors::membrane::MembraneChoice;
-use crate::priors::peptidase;
 use crate::restraints::{Crosslink, Needed, RestraintFile, RestraintFileError, TblBounds};
+
+/// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/research/effects.md,
+/// "Active sites").
+pub(crate) const PEPTIDASE_WEIGHT: f64 = 500.0;
 
 /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
 #[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -93,7 +96,7 @@ pub struct RestraintOptions {
     /// A pose that touches some of the catalytic residues gets that share of it. Peptidases are detected from their
     /// sequence. This counts if the contact effect is on, no residue is active, and the other molecule is neither
     /// peptidase nor antibody.
-    #[arg(long, value_name = "NUMBER", value_parser = number(0.0..=1e6), default_value_t = peptidase::WEIGHT)]
+    #[arg(long, value_name = "NUMBER", value_parser = number(0.0..=1e6), default_value_t = PEPTIDASE_WEIGHT)]
     pub peptidase_weight: f64,
 }
 

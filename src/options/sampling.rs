@@ -3,9 +3,10 @@
 use std::fmt;
 use std::str::FromStr;
 
-use clap::{Args, ValueEnum};
+use clap::Args;
 use serde::{Deserialize, Serialize};
 
+use crate::mesh::SampleWeights;
 use crate::mesh::samplers::SamplerName;
 
 /// How meshes are sampled. Molecules are balls as they come.
@@ -95,17 +96,6 @@ impl FromStr for SampleGrid {
             )),
         }
     }
-}
-
-/// Weights of a mesh's balls.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
-#[serde(rename_all = "lowercase")]
-pub enum SampleWeights {
-    /// Such that the summed bumps come closest to one inside and to zero outside.
-    #[default]
-    Fitted,
-    /// One each.
-    Unit,
 }
 
 #[cfg(test)]

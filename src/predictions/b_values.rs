@@ -4,7 +4,7 @@
 use knotdock_structures::molecule::Molecule;
 
 use super::{Prediction, PredictionFault, is_probability};
-use crate::named_columns::{AtLine, listed};
+use crate::table_text::named_columns::{AtLine, listed};
 
 /// The predictions of a molecule, amino acid by amino acid.
 pub(super) fn read(molecule: &Molecule) -> Result<Vec<Prediction>, AtLine<PredictionFault>> {

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::named_columns::{AtLine, TableFault};
 use crate::predictions::table::COLUMNS;
+use crate::table_text::named_columns::{AtLine, TableFault};
 
 /// Why predictions cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -13,7 +13,7 @@ use std::collections::HashMap;
 use knotdock_structures::molecule::{Molecule, ResidueSelection};
 
 use super::{Prediction, PredictionFault, is_probability};
-use crate::named_columns::{AtLine, read_rows, shortened};
+use crate::table_text::named_columns::{AtLine, read_rows, shortened};
 
 /// The columns of a table.
 pub(super) const COLUMNS: [&str; 3] = ["chain", "residue", "probability"];
@@ -103,7 +103,7 @@ fn probability(field: &str) -> Result<f64, PredictionFault> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::named_columns::TableFault;
+    use crate::table_text::named_columns::TableFault;
     use crate::test_molecules::molecules;
     use proptest::prelude::*;
 

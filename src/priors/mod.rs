@@ -5,7 +5,7 @@
 
 pub mod active_residues;
 pub mod antibody;
-pub mod membrane;
+pub mod flexible_regions;
 pub mod peptidase;
 mod peptidase_families;
 pub mod restrained;

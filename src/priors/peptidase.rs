@@ -9,6 +9,7 @@
 //! Families whose sites lie deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or that cut small molecules
 //! besides (lipases, esterases) are left out.
 
+use crate::options::PEPTIDASE_WEIGHT;
 use std::collections::BTreeSet;
 use std::ops::Range;
 
@@ -18,10 +19,6 @@ use serde_json::json;
 
 use super::peptidase_families::{Anchor, families};
 use super::{Findings, Prior, Site, SiteRole};
-
-/// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/research/effects.md,
-/// "Active sites").
-pub const WEIGHT: f64 = 500.0;
 
 /// Largest distance in Å of the CA atoms of two catalytic residues; known structures have 6 to 9.
 const TOGETHER: f64 = 12.0;
@@ -97,7 +94,7 @@ impl Prior for PeptidasePrior {
             reason: format!("a peptidase, {}", site.in_words()),
             record: json!(site),
             residues: site.atoms,
-            weight: WEIGHT,
+            weight: PEPTIDASE_WEIGHT,
         };
         ActiveSite::all(molecule).into_iter().map(site).collect()
     }

@@ -15,15 +15,15 @@
 //! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same
 //! score, so that such a cluster has many good poses; where a joint fits there is one place.
 
-use crate::dock::outcome::RankedPose;
-use crate::dock::scene::LengthUnit;
 use crate::pose_space::PoseSpace;
 use crate::progress::Progress;
 use crate::rank::candidates::Candidate;
+use crate::rank::sharp::SharpPose;
+use knotdock_scoring::exact::ShapeParts;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::Effect;
-use knotdock_scoring::terms::pose::{Rescorer, Workspace};
+use knotdock_scoring::terms::pose::{Rescorer, TermValues, Workspace};
 use rayon::prelude::*;
 
 /// Scorer of the table's rows.
@@ -43,19 +43,51 @@ pub(crate) struct PoseScorer<'a> {
     pub diagnostics: bool,
 }
 
+/// One row of `poses.csv`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RankedPose {
+    /// From the ligand's file frame to the receptor's.
+    pub pose: Pose,
+    /// The score that orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
+    pub score: f64,
+    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
+    pub search_score: f64,
+    /// 1-based cluster number, best cluster first.
+    pub cluster: Option<usize>,
+    /// Number of poses in that cluster.
+    pub cluster_size: Option<usize>,
+    /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at
+    /// least the best pose's.
+    pub cluster_score: Option<f64>,
+    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the ascent.
+    pub refined: bool,
+    /// Index in the rotation set of the grid pose that this row came from.
+    pub rotation: usize,
+    /// Score of that grid pose as the fast path computed it.
+    pub score_grid: f64,
+    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the
+    /// effect is off.
+    pub terms: [Option<f64>; Effect::ALL.len()],
+    /// Slices and unfiltered score of shape at `pose`; `None` without `--diagnostics`.
+    pub shape: Option<ShapeParts>,
+    /// Weighted values of the pose terms at `pose`, by id.
+    pub pose_terms: TermValues,
+    /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
+    pub other_copies: Option<f64>,
+    /// Its sharp fit; `None` where none was looked for.
+    pub sharp: Option<SharpPose>,
+    /// Sum that ranks poses: `search_score`, the pose terms, `other_copies` and the score of the sharp fit.
+    pub pose_score: f64,
+    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not
+    /// differ.
+    pub z_score: Option<f64>,
+}
+
 /// The ranked rows, and the number of clusters.
 pub(crate) struct Ranking {
     /// Best first.
     pub poses: Vec<RankedPose>,
     pub clusters: usize,
-}
-
-/// T as a share of the run's best score, by what is docked.
-pub(crate) fn cluster_temperature(unit: LengthUnit) -> f64 {
-    match unit {
-        LengthUnit::Angstrom => 0.1,
-        LengthUnit::File => 0.0,
-    }
 }
 
 /// Most rows that a thread takes at once: refined ones take longer and come first.
@@ -243,6 +275,7 @@ impl Candidate {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::dock::scene::LengthUnit;
     use crate::pose_space::refine::RefinedPose;
     use crate::progress::NoProgress;
     use crate::rank::candidates::candidates;
@@ -370,13 +403,13 @@ mod tests {
         let placed = |x: &f64| RefinedPose::best_of((at(*x), score(*x)), None);
         let placed: Vec<RefinedPose> = poses.iter().map(placed).collect();
         let candidates = candidates(&peaks, &placed, &[], None);
-        let first = |unit| {
+        let first = |unit: LengthUnit| {
             let pose_scorer = PoseScorer {
                 scorer: &scorer,
                 rescorer: None,
                 on: [true, false, false, false],
                 space: &PoseSpace::Free,
-                cluster_temperature: cluster_temperature(unit),
+                cluster_temperature: unit.cluster_temperature(),
                 diagnostics: false,
             };
             let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);

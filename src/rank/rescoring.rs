@@ -1,8 +1,8 @@
 //! Rescoring of one docking: the inputs and weights of its pose terms.
 
-use crate::dock::flexible_regions::FlexibleRegions;
 use crate::options::DockOptions;
 use crate::priors::active_residues::ActiveResidues;
+use crate::priors::flexible_regions::FlexibleRegions;
 use crate::priors::restrained::Restrained;
 use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermInputs};
 use knotdock_structures::Knots;

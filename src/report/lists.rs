@@ -11,9 +11,9 @@ use crate::bounded_read::{MAX_POSES, MAX_RECORD, read_bounded_file};
 use crate::output::files::seal::REPORT;
 use crate::output::records::ensemble_record::{MEMBERS, RECORD};
 use crate::output::tables::batch_results::RESULTS;
-use crate::output::tables::cells::unquoted_row;
 use crate::output::tables::report::counted;
 use crate::report::list::ListReport;
+use crate::table_text::cells::unquoted_row;
 
 /// Why the files of a directory make no report.
 #[derive(Debug, thiserror::Error)]

@@ -4,11 +4,11 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use crate::named_columns::listed;
 use crate::output::tables::report::counted;
 use crate::report::html::escaped;
 use crate::report::run_data::active;
 use crate::report::run_parts::RunReport;
+use crate::table_text::named_columns::listed;
 
 /// Name of a file without its folder.
 fn file_name(path: &Value) -> &str {

@@ -1,7 +1,7 @@
 //! Bounds of a restraint, checked.
 
-use crate::named_columns::shortened;
 use crate::restraints::error::RestraintFault;
+use crate::table_text::named_columns::shortened;
 
 /// Largest distance that is taken, in Å: far beyond any molecule, and its sixth power is a number.
 const MAX_DISTANCE: f64 = 1e10;

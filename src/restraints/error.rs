@@ -2,8 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::named_columns::{AtLine, TableFault, shortened};
 use crate::restraints::crosslink;
+use crate::table_text::named_columns::{AtLine, TableFault, shortened};
 
 /// Why a file of restraints cannot be used.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]

@@ -4,8 +4,8 @@ use std::collections::HashMap;
 
 use knotdock_structures::molecule::{Atom, Molecule, ResidueSelection};
 
-use crate::named_columns::{listed, shortened};
 use crate::restraints::error::RestraintFault;
+use crate::table_text::named_columns::{listed, shortened};
 
 /// Reads the fields of one column.
 pub(super) struct SideAtoms<'a> {

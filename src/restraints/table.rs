@@ -17,12 +17,12 @@ use std::collections::{HashMap, HashSet};
 
 use knotdock_structures::molecule::Molecule;
 
-use crate::named_columns::{read_rows, shortened};
 use crate::restraints::bounds::{Bounds, distance};
 use crate::restraints::crosslink::Crosslink;
 use crate::restraints::error::{Located, RestraintFault};
 use crate::restraints::restraint::{NamedRestraint, SelectedAtoms};
 use crate::restraints::side_atoms::SideAtoms;
+use crate::table_text::named_columns::{read_rows, shortened};
 
 /// The columns that a table may have.
 pub const COLUMNS: [&str; 6] = ["receptor", "ligand", "lower", "target", "upper", "group"];

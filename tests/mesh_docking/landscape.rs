@@ -2,10 +2,11 @@
 
 use super::parts::{Pair, Part};
 use super::scenes::{broken, peg, solid, torus};
+use knotdock::dock::pair::{GivenLengths, sampled_defaults};
 use knotdock::dock::scene::Scene;
 use knotdock::mesh::samplers::lattice::{RADIUS, RESOLUTION};
 use knotdock::mesh::samplers::{SamplerName, bi};
-use knotdock::mesh::{GivenLengths, MeshOptions, MeshPair, sample_pair};
+use knotdock::mesh::{MeshOptions, MeshPair, sample_pair};
 use knotdock::options::{DockOptions, SampleGrid, SampleWeights};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
@@ -31,7 +32,7 @@ fn sampled(pair: &Pair) -> MeshPair {
 
 fn scorer(meshes: &MeshPair) -> ExactScorer {
     let mut options = DockOptions::default();
-    meshes.defaults(&mut options, GivenLengths::default());
+    sampled_defaults(meshes, &mut options, GivenLengths::default());
     let scene = Scene::of_meshes(meshes, &options).unwrap();
     let plan = Plan::new(&scene.receptor, &scene.ligand, options.kernel.engine()).unwrap();
     ExactScorer::new(plan.kernel(), &scene.receptor, &scene.ligand).unwrap()

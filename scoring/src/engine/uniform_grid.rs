@@ -25,10 +25,10 @@
 //! ligand scores with the receptor and its image both. Scores are in Å^3.
 
 use super::plan::{PlanError, check_bodies};
-use crate::exact::center;
 use crate::kernel::product::{Body, factors, peak_score_and_reach};
 use crate::kernel::{Band, KernelOptions, ProductKernel};
 use crate::quantity::Quantity;
+use crate::rigid_move::center;
 use crate::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
 use crate::transform::{Real, fast_size};
 use knotdock_structures::Knots;

@@ -18,6 +18,7 @@ mod tests;
 
 use crate::blocks::Blocks;
 use crate::kernel::RankingKernel;
+pub use crate::rigid_move::{PoseGradient, center};
 use crate::se3::Pose;
 use crate::terms::effect::{ActiveTerm, Effect};
 use effects::PairTerm;
@@ -67,15 +68,6 @@ impl ExactScore {
             unfiltered: shape.unfiltered,
         }
     }
-}
-
-/// Gradient of a score: per Å of translation, and per radian of rotation about the ligand's centre.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct PoseGradient {
-    /// dG / dt.
-    pub force: Vector3<f64>,
-    /// dG / d omega, for R -> `exp([omega]x)` R about the ligand's centre.
-    pub torque: Vector3<f64>,
 }
 
 /// A pair of knot sets prepared for exact scoring.
@@ -199,10 +191,4 @@ impl ExactScorer {
         let center = rotation * self.ligand_center + pose.translation - self.receptor_center;
         (rotation, center)
     }
-}
-
-/// Middle of the bounding box, in Å: exact under scaling by powers of two, and within a rounding error under shifts.
-pub fn center(knots: &Knots) -> Vector3<f64> {
-    let (low, high) = knots.bounds();
-    Vector3::from([0, 1, 2].map(|axis| low[axis] + 0.5 * (high[axis] - low[axis])))
 }

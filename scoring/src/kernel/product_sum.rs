@@ -6,7 +6,7 @@
 
 use super::product::ProductKernel;
 use super::table::Table;
-use crate::exact::{PoseGradient, center};
+use crate::rigid_move::{PoseGradient, center};
 use crate::se3::Pose;
 use crate::vectorized::vectorized;
 use knotdock_structures::Knots;

@@ -40,7 +40,7 @@ pub use energy::Energy;
 pub use pair_list::PairList;
 
 use crate::blocks::{Blocks, Near};
-use crate::exact::center;
+use crate::rigid_move::center;
 use crate::se3::Pose;
 use contacts::{ContactLanes, LANES};
 use knotdock_structures::{Knots, PolarAtom};

@@ -18,7 +18,7 @@ mod ring_axis;
 use std::fmt;
 use std::str::FromStr;
 
-use crate::exact::PoseGradient;
+use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 pub use ring_axis::{NotARing, RingAxis};

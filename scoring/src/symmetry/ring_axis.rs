@@ -6,7 +6,7 @@
 //! These are two degrees of freedom; moves along and about the ring's axis span them.
 
 use super::{conjugated, direction};
-use crate::exact::PoseGradient;
+use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
 use nalgebra::{Matrix3, Unit, UnitQuaternion, Vector3};
 use std::f64::consts::{PI, TAU};

@@ -1,6 +1,6 @@
 //! The ligand's knots in blocks, a vector lane each.
 
-use crate::exact::PoseGradient;
+use crate::rigid_move::PoseGradient;
 use knotdock_structures::Knots;
 use nalgebra::{Rotation3, Vector3};
 

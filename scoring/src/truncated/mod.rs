@@ -30,7 +30,7 @@ pub use workspace::Workspace;
 
 use crate::engine::Plan;
 use crate::engine::ReceptorSpectra;
-use crate::exact::PoseGradient;
+use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
 use crate::transform::Real;
 use crate::transform::truncation::Selection;

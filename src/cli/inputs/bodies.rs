@@ -3,9 +3,9 @@
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::dock::pair::{Pair, PreparedPair, Sampling};
+use crate::dock::pair::{GivenLengths, Pair, PreparedPair, Sampling, sampled_defaults};
 use crate::error::SearchError;
-use crate::mesh::{GivenLengths, MeshOptions, MeshPair, MeshSceneError};
+use crate::mesh::{MeshOptions, MeshPair, MeshSceneError};
 use crate::options::DockOptions;
 use crate::output::files::assemblies::write_assemblies;
 use crate::output::files::complexes::write_complexes;
@@ -333,7 +333,7 @@ fn sampled(
     room_to_sample(sampling.per_axis, options.machine.memory)?;
     let solids = inputs.each_ref().map(ShapeInput::shape);
     let sampling = Sampling::of(solids, &sampling).map_err(|error| mesh_failure(&error, inputs))?;
-    sampling.pair.defaults(options, given);
+    sampled_defaults(&sampling.pair, options, given);
     console.say(match console.verbose {
         true => sampling_text(&sampling.pair),
         false => brief_sampling_text(&sampling.pair),

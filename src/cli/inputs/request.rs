@@ -2,9 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::dock::pair::{PreparedPair, Sampling};
+use crate::dock::pair::{GivenLengths, PreparedPair, Sampling};
 use crate::evaluate::Evaluator;
-use crate::mesh::GivenLengths;
 use crate::options::{DockOptions, MachineOptions};
 use crate::output::files::staging::put_back;
 use crate::output::records::manifest::Inputs;

@@ -5,8 +5,8 @@
 
 use std::fs;
 
-use crate::dock::memory::size::{as_size, in_words, named};
 use crate::geometry::obstacle::reduce::BYTES_REDUCED;
+use crate::memory_size::{as_size, in_words, named};
 use knotdock_structures::molecule::InputSpec;
 
 use crate::cli::messages::failure::Failure;

@@ -5,13 +5,13 @@ use std::path::Path;
 
 use crate::dock::outcome::DockOutcome;
 use crate::dock::plan::DockPlan;
-use crate::named_columns::listed;
 use crate::options::EngineChoice;
 use crate::options::values::{angle_of_rotations, rotations_of_angle};
 use crate::output::files::seal::REPORT;
 use crate::output::tables::report::counted;
 use crate::rank::sharp::{SharpFinding, SharpPose};
 use crate::shell_word::shell_word;
+use crate::table_text::named_columns::listed;
 use crate::tradeoff::choice::Chosen;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_structures::molecule::LabelReport;

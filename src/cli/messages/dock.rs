@@ -2,13 +2,14 @@
 
 use std::collections::BTreeMap;
 
-use crate::dock::flexible_regions::FlexibleRegions;
-use crate::dock::outcome::{DockOutcome, EffectCost, RankedPose};
+use crate::dock::outcome::{DockOutcome, EffectCost};
 use crate::dock::plan::DockPlan;
 use crate::output::tables::report::counted;
 use crate::output::tables::restraints::most_met;
 use crate::priors::active_residues::AssumedSite;
+use crate::priors::flexible_regions::FlexibleRegions;
 use crate::priors::restrained::Restrained;
+use crate::rank::ranking::RankedPose;
 use crate::rank::sharp::SharpFinding;
 use crate::tradeoff::choice::MIN_ROTATIONS;
 use knotdock_scoring::terms::effect::Effect;

@@ -1,15 +1,14 @@
 //! Memory of a run: what it takes, how many rotations fit at once, and the finest grid that would fit.
 
 pub mod process;
-pub mod size;
 pub mod stages;
 
 use crate::dock::scene::Scene;
 use crate::error::SearchError;
+use crate::memory_size::named;
 use crate::options::{DockOptions, EngineChoice, KernelOptions};
 use crate::pose_space::PoseSpace;
 use knotdock_scoring::engine::Plan;
-use size::named;
 use stages::{MemoryStage, Sizes};
 
 /// Bytes that rotations in flight may take of a graphics processor's memory, which may be the computer's own.

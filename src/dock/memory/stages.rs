@@ -4,15 +4,14 @@
 //! them. Each part is computed from the sizes of what the stage makes, so that the plan follows the code.
 
 use crate::dock::memory::process;
-use crate::dock::outcome::RankedPose;
 use crate::dock::scene::{LengthUnit, Scene};
 use crate::options::{DockOptions, Precision};
-use crate::output::tables::poses::PoseRow;
 use crate::pose_space::PoseSpace;
 use crate::pose_space::refine::RefinedPose;
 use crate::pose_space::rotations::RotationGroup;
 use crate::rank::candidates::Candidate;
 use crate::rank::cluster::PlacedBody;
+use crate::rank::ranking::RankedPose;
 use knotdock_scoring::engine::{EngineMemory, Plan};
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::potential_grid::PotentialGrid;
@@ -393,7 +392,7 @@ impl Sizes {
     }
 
     fn write(&self) -> MemoryStage {
-        let row = (size_of::<RankedPose>() + size_of::<PoseRow>()) as u64 + QUALITY;
+        let row = (size_of::<RankedPose>() + size_of::<(usize, Pose)>()) as u64 + QUALITY;
         self.stage(
             "write",
             &[

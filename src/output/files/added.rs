@@ -17,11 +17,8 @@ use super::checksum::sha256_of_file;
 use super::disk;
 use super::lock::Lock;
 use super::seal::REPORT;
-use super::staging::{ENSEMBLE, Made, OwnFiles, Stage, is_of_us, is_run, locked, name_of};
+use super::staging::{ADDED, ENSEMBLE, Made, OwnFiles, Stage, is_of_us, is_run, locked, name_of};
 use super::whole_file::{FileError, is_link, leftovers, parent, to_json, write_whole};
-
-/// The list of what was added to a run, with checksums as `files`.
-pub const ADDED: &str = "added.json";
 
 /// Files that are being added.
 #[derive(Debug)]

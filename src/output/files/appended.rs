@@ -58,7 +58,7 @@ impl AppendedFile {
     /// Appends an entry, to the device. One that cannot be written whole is taken back.
     ///
     /// # Errors
-    /// [`FileError::Write`].
+    /// [`FileError`].
     pub fn append(&mut self, entry: &[u8]) -> Result<(), FileError> {
         let written = self.write(entry);
         if written.is_err() {

@@ -14,7 +14,6 @@ use serde_json::Value;
 
 use crate::bounded_read::{MAX_RECORD, read_bounded_file};
 
-use super::added::ADDED;
 use super::checksum::sha256_of_file;
 use super::disk;
 use super::lock::Lock;
@@ -29,6 +28,8 @@ pub const RUN: &str = "run.json";
 pub const ENSEMBLE: &str = "ensemble.json";
 /// The record of `knotdock tradeoff`.
 pub const TRADEOFF: &str = "tradeoff.json";
+/// The list of what was added to a run, with checksums as `files`.
+pub const ADDED: &str = "added.json";
 
 /// A folder that this process alone writes to, until it takes its place. Dropped before that, it goes.
 #[derive(Debug)]

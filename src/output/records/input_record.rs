@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use knotdock_structures::molecule::InputSpec;
 use serde::{Deserialize, Serialize};
 
-use crate::dock::memory::size::in_words;
+use crate::memory_size::in_words;
 use crate::output::files::checksum::{sha256, sha256_of_file};
 use crate::output::files::whole_file::is_stream;
 use crate::plain_path::plain_path;

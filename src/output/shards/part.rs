@@ -13,7 +13,7 @@ use crate::output::files::appended::AppendedFile;
 use crate::output::files::folder::{next_line, open_own};
 use crate::output::files::whole_file::{FileError, StagedFile};
 use crate::output::tables::batch_results::{PairResult, RESULTS, head, name_and_status, row};
-use crate::output::tables::cells::unquoted;
+use crate::table_text::cells::unquoted;
 
 /// A batch's or a shard's files, open for further pairs.
 #[derive(Debug)]

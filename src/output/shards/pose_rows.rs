@@ -3,9 +3,9 @@
 use std::io;
 
 use super::members::packed;
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::Column;
 use crate::output::tables::run_table::RunTable;
+use crate::table_text::cells::TableWriter;
 
 /// Columns that some runs add to their tables, in this order. Each is empty where a pair has none of it.
 pub const WIDE_COLUMNS: [&str; 6] = ["restraints_met", "irmsd", "lrmsd", "fnat", "dockq", "capri"];

@@ -8,8 +8,8 @@ use std::path::Path;
 use knotdock_structures::molecule::{AtomFate, DropKind};
 
 use crate::output::files::whole_file::{FileError, write_whole};
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
+use crate::table_text::cells::TableWriter;
 
 /// The columns, in order.
 pub const COLUMNS: [&str; 16] = [

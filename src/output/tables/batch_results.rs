@@ -6,8 +6,8 @@ use csv::StringRecord;
 use serde_json::Value;
 
 use crate::bounded_read::{MAX_RECORD, read_bounded_file};
-use crate::output::tables::cells::{TableWriter, unquoted};
 use crate::output::tables::fields::number;
+use crate::table_text::cells::{TableWriter, unquoted};
 
 use crate::output::tables::poses::PoseTable;
 use crate::output::tables::poses_reader::PoseTableError;

@@ -11,8 +11,8 @@ use serde_json::{Map, Value, json};
 
 use crate::geometry::collide::Answer;
 use crate::output::files::whole_file::{FileError, StagedFile};
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
+use crate::table_text::cells::TableWriter;
 use std::path::Path;
 
 /// A value of a row.

@@ -5,9 +5,9 @@ use std::io;
 use serde_json::{Map, Value, json};
 
 use crate::evaluate::PoseQuality;
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
 use crate::output::tables::quality;
+use crate::table_text::cells::TableWriter;
 
 /// A complex, and how near it is to the known one.
 #[derive(Clone, Debug)]

@@ -7,8 +7,8 @@ use knotdock_scoring::terms::pose::POSE_TERMS;
 use serde_json::{Map, Value, json};
 
 use crate::interface::{Interface, PlacedScore};
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
+use crate::table_text::cells::TableWriter;
 
 /// A complex.
 #[derive(Clone, Debug)]

@@ -3,8 +3,8 @@
 use std::io;
 
 use crate::interface::ResidueShare;
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
+use crate::table_text::cells::TableWriter;
 
 /// Name of the file.
 pub const INTERFACE: &str = "interface.csv";

@@ -2,10 +2,8 @@
 
 pub mod atom_table;
 pub mod batch_results;
-pub mod cells;
 pub mod collisions;
 pub mod complexes;
-pub(crate) mod csv_lines;
 pub mod fields;
 pub mod interface;
 pub mod interface_shares;
@@ -19,4 +17,3 @@ pub mod refined;
 pub mod report;
 pub mod restraints;
 pub mod run_table;
-pub(crate) mod spreadsheet;

@@ -7,9 +7,9 @@ use csv::StringRecord;
 
 use crate::bounded_read::{MAX_PAIRS, read_bounded};
 use crate::output::files::checksum::sha256;
-use crate::output::tables::cells::unquoted;
-use crate::output::tables::csv_lines::line_of;
-use crate::output::tables::spreadsheet::{column_name, plain};
+use crate::table_text::cells::unquoted;
+use crate::table_text::csv_lines::line_of;
+use crate::table_text::spreadsheet::{column_name, plain};
 
 /// What a line begins with that is no row.
 const COMMENT: Option<u8> = Some(b'#');

@@ -13,8 +13,8 @@
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::{POSE_TERMS, TermDefinition};
 
-use crate::dock::outcome::RankedPose;
 use crate::output::tables::fields::number;
+use crate::rank::ranking::RankedPose;
 
 /// A column: its name, and its field of a pose.
 pub(crate) struct PoseColumn {

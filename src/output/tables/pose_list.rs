@@ -7,9 +7,9 @@ use std::path::Path;
 use knotdock_scoring::se3::Pose;
 
 use crate::output::files::whole_file::{FileError, StagedFile};
-use crate::output::tables::cells::unquoted_row;
-use crate::output::tables::csv_lines::line_of;
 use crate::output::tables::poses_reader::{PlacementColumns, PoseTableError};
+use crate::table_text::cells::unquoted_row;
+use crate::table_text::csv_lines::line_of;
 
 /// A byte that begins a remark.
 const COMMENT: Option<u8> = Some(b'#');

@@ -13,8 +13,8 @@ use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
 use crate::output::files::whole_file::{FileError, write_whole};
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::Column;
+use crate::table_text::cells::TableWriter;
 
 /// A table of poses as text, with the pose of each row: what `evaluate` and `export` read.
 #[derive(Clone, Debug, PartialEq)]

@@ -8,9 +8,9 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::LARGEST_LENGTH;
 
 use crate::bounded_read::{MAX_POSES, read_bounded};
-use crate::output::tables::cells::unquoted_row;
-use crate::output::tables::csv_lines::line_of;
 use crate::output::tables::poses::{PoseRow, PoseTable};
+use crate::table_text::cells::unquoted_row;
+use crate::table_text::csv_lines::line_of;
 
 /// Why a table of poses cannot be read.
 #[derive(Debug, thiserror::Error)]

@@ -8,9 +8,9 @@ use std::io;
 use serde_json::{Map, Value, json};
 
 use crate::evaluate::PoseQuality;
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::number;
 use crate::refine::Refined;
+use crate::table_text::cells::TableWriter;
 
 /// A refined pose, with its qualities before and after where there is a known complex.
 pub struct RefinedRow {

@@ -2,9 +2,9 @@
 
 use serde_json::Value;
 
-use crate::dock::outcome::RankedPose;
 use crate::output::tables::fields::Column;
 use crate::output::tables::poses::PoseTable;
+use crate::rank::ranking::RankedPose;
 
 /// Rows of the table of best clusters.
 pub const BEST: usize = 10;

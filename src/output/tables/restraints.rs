@@ -2,11 +2,11 @@
 
 use std::io;
 
-use crate::dock::outcome::RankedPose;
 use crate::dock::plan::DockPlan;
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::{Column, number};
 use crate::priors::restrained::Restrained;
+use crate::rank::ranking::RankedPose;
+use crate::table_text::cells::TableWriter;
 
 /// Columns of `restraints.csv`.
 const HEADER: [&str; 6] = ["rank", "restraint", "distance", "lower", "upper", "met"];

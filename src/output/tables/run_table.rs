@@ -5,11 +5,11 @@ use std::io;
 use csv::StringRecord;
 use serde_json::Value;
 
-use crate::dock::outcome::RankedPose;
-use crate::output::tables::cells::TableWriter;
 use crate::output::tables::fields::Column;
 use crate::output::tables::pose_columns::{PoseColumn, columns};
 use crate::output::tables::poses::{PoseRow, PoseTable, row_object};
+use crate::rank::ranking::RankedPose;
+use crate::table_text::cells::TableWriter;
 
 /// The table of a search's poses in the order given, ranked from 1.
 pub struct RunTable<'a> {

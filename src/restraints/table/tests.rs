@@ -1,8 +1,8 @@
 //! Tables that are read, and tables that are refused by line.
 
 use super::*;
-use crate::named_columns::TableFault;
 use crate::restraints::CROSSLINKS;
+use crate::table_text::named_columns::TableFault;
 use crate::test_molecules::molecules;
 
 fn read_with(text: &str, crosslink: Option<Crosslink>) -> Result<Vec<NamedRestraint>, Located> {

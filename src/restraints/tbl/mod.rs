@@ -39,10 +39,10 @@ use self::expression::{Selections, unexpected};
 use self::hydrogens::widened;
 use self::sides::{Selected, Sides};
 use self::tokens::{Place, Token};
-use crate::named_columns::shortened;
 use crate::restraints::bounds::{Bounds, distance};
 use crate::restraints::error::{Located, RestraintFault};
 use crate::restraints::restraint::{FileRestraints, NamedRestraint, SelectedAtoms, TblBounds};
+use crate::table_text::named_columns::shortened;
 
 /// What may stand behind the distances with a number, and says nothing of them.
 const PASSED_OVER: [&str; 6] = ["peak", "spectrum", "volume", "ppm1", "ppm2", "cv"];

@@ -4,11 +4,11 @@ use std::collections::BTreeSet;
 
 use knotdock_structures::molecule::Molecule;
 
-use crate::named_columns::listed;
 use crate::restraints::error::RestraintFault;
 use crate::restraints::side_atoms::{heavy, residue};
 use crate::restraints::tbl::atom_index::AtomIndex;
 use crate::restraints::tbl::expression::{Expression, Tested};
+use crate::table_text::named_columns::listed;
 
 /// Receptor and ligand as statements see them: all their atoms in one.
 pub(super) struct Sides<'a> {

@@ -1,7 +1,7 @@
 //! Words and signs of a `.tbl` file, with their places.
 
-use crate::named_columns::shortened;
 use crate::restraints::error::{Located, RestraintFault};
+use crate::table_text::named_columns::shortened;
 
 /// A word or a sign.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -2,10 +2,10 @@
 
 use super::error::PlanError;
 use super::options::EngineOptions;
-use crate::exact::center;
 use crate::kernel::product::peak_score_and_reach;
 use crate::kernel::table::Table;
 use crate::kernel::{Band, ProductKernel, RankingKernel};
+use crate::rigid_move::center;
 use crate::terms::effect::ActiveTerm;
 use crate::transform::fast_size;
 use crate::transform::modes::ModeSet;

@@ -1,7 +1,7 @@
 //! Two bodies of typed atoms, and sums over their pairs within a reach.
 
 use crate::blocks::{Blocks, Near};
-use crate::exact::center;
+use crate::rigid_move::center;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;

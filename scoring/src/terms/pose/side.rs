@@ -1,7 +1,7 @@
 //! All atoms of one side, for finding those near a point of the other side.
 
 use crate::blocks::{Blocks, Near};
-use crate::exact::center;
+use crate::rigid_move::center;
 use crate::se3::Pose;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;

@@ -8,7 +8,7 @@
 use super::side::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::blocks::Near;
-use crate::exact::center;
+use crate::rigid_move::center;
 use crate::se3::Pose;
 use crate::terms::weight::Weight;
 use knotdock_structures::{Conformers, Knots};

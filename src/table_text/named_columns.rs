@@ -6,9 +6,9 @@ use std::collections::HashSet;
 
 use csv::StringRecord;
 
-use crate::output::tables::cells::unquoted;
-use crate::output::tables::csv_lines::line_of;
-use crate::output::tables::spreadsheet::{column_name, plain};
+use crate::table_text::cells::unquoted;
+use crate::table_text::csv_lines::line_of;
+use crate::table_text::spreadsheet::{column_name, plain};
 
 const COMMENT: Option<u8> = Some(b'#');
 
