@@ -14,7 +14,7 @@ BEGINS = re.compile(
     r"#\[error\(|Failure::(?:input|other|of_program)\(|\.remedy\(|\.warn\(|\.error\(|warnings\.push\(|"
     r"(?:fn (?:remedy|advice|help)\w*\([^)]*\)[^{;]*\{)|(?:message|remedy|reason|instead)\s*[:=]\s*|"
     r"Err\((?:format!\()?\"|"
-    r"suggestion\(|wrong\(|refuse\w*\(|fault\(|unreadable\("
+    r"wrong\(|refuse\w*\(|fault\(|unreadable\("
 )
 LITERAL = re.compile(r'"((?:[^"\\]|\\.)*)"', re.S)
 

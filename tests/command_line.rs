@@ -62,6 +62,40 @@ fn the_short_help_fits_a_screen_and_the_long_one_has_everything() {
     assert!(!long.contains("-weight <"), "{long}");
 }
 
+/// The lists wrap at the width of the terminal.
+#[test]
+fn commands_are_listed_by_subject() {
+    for (words, width) in [("--help", 100), ("-h", 60), ("help", 60)] {
+        let mut command = Command::new(assert_cmd::cargo::cargo_bin!("knotdock"));
+        command.env("COLUMNS", width.to_string()).arg(words);
+        let help = String::from_utf8(command.output().unwrap().stdout).unwrap();
+        assert!(
+            help.lines().all(|line| line.chars().count() <= width),
+            "{help}"
+        );
+        let is_heading = |line: &&str| line.ends_with(':') && !line.starts_with(' ');
+        let headings: Vec<&str> = help.lines().filter(is_heading).collect();
+        assert_eq!(
+            headings,
+            ["Docking:", "Results:", "Solids:", "Accuracy:", "Options:"],
+            "{help}"
+        );
+        for part in [
+            "\n\nDocking:\n  dock       Dock a ligand",
+            "\n\nResults:\n  export ",
+            "\n  interface  Describe",
+            "\n\nSolids:\n  sample ",
+            "\n\nAccuracy:\n  tradeoff ",
+            "\n\nOptions:\n      --json",
+        ] {
+            assert!(help.contains(part), "{part}: {help}");
+        }
+        for hidden in ["preset", "completions", "man"] {
+            assert!(!help.contains(&format!("\n  {hidden} ")), "{help}");
+        }
+    }
+}
+
 #[test]
 fn a_preset_is_a_file_and_later_files_win_over_it() {
     let place = place();

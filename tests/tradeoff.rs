@@ -285,14 +285,9 @@ fn bad_input_is_refused_before_anything_runs() {
     }
 }
 
-/// A cost model of a machine so slow that a few hundred rotations fill a minute.
-const SLOW: &str = r#"{"schema": 1, "program": "knotdock", "threads": 1, "cost_model": {"inverse": 1e-7, "field": 1e-12,
-    "prepare": 1e-12, "pair": 1e-15, "rescore": 1e-15, "refine": 1e-15, "rotation": 1e-12, "covering": 1e-12}}"#;
-
 fn dock(folder: &Path, arguments: &[&str]) -> Output {
     cargo_bin_cmd!("knotdock")
         .current_dir(folder)
-        .env("XDG_CACHE_HOME", folder)
         .args(["dock", "--json"])
         .args(arguments)
         .output()
@@ -300,14 +295,11 @@ fn dock(folder: &Path, arguments: &[&str]) -> Output {
 }
 
 /// An accuracy sets tolerance and spacing, a budget the rotations; the record has the choice, and `--rerun` repeats
-/// it without a cost model.
+/// it.
 #[test]
 fn a_docking_within_an_accuracy_and_a_time() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (case("helices_receptor.pdb"), case("helices_ligand.pdb"));
-    fs::create_dir(folder.path().join("knotdock")).unwrap();
-    let model = folder.path().join("knotdock/cost_model.json");
-    fs::write(&model, SLOW).unwrap();
     let pair = [receptor.as_str(), &ligand, "--poses", "50"];
     let with = |more: &[&str]| {
         let output = dock(folder.path(), &[&pair[..], more].concat());
@@ -322,49 +314,23 @@ fn a_docking_within_an_accuracy_and_a_time() {
         .unwrap();
     assert!(error <= 1e-3 && run["error"]["rms"].as_f64().unwrap() < 2.0 * error);
     assert_eq!(run["options"]["search"]["rotations"], 8);
-    // Seconds of a rotation follow, and with them a budget for about 700.
-    let each = run["machine"]["chosen"]["predicted_seconds"]
-        .as_f64()
-        .unwrap()
-        / 8.0;
-    let budget = format!("{}s", 700.5 * each);
-    let (code, object) = with(&[&accuracy[..], &["--budget", &budget, "-o", "one"]].concat());
+    let (code, object) = with(&[&accuracy[..], &["--budget", "0.5s", "-o", "one"]].concat());
     assert_eq!(code, Some(0));
     let run = &object["run"];
-    assert_eq!(run["options"]["search"]["rotations"], 700);
+    let planned = run["options"]["search"]["rotations"].as_u64().unwrap();
+    assert!((600..=56_250).contains(&planned), "{planned}");
     assert_eq!(
         run["options"]["kernel"]["tolerance"],
         plain.1["run"]["options"]["kernel"]["tolerance"]
     );
-    let chosen = &run["machine"]["chosen"];
-    assert!(
-        chosen["cost_model"]
-            .as_str()
-            .unwrap()
-            .ends_with("cost_model.json")
-    );
-
-    fs::write(&model, "no model").unwrap();
+    assert_eq!(run["machine"]["chosen"]["budget_seconds"], 0.5);
     let again = dock(folder.path(), &["--rerun", "one/run.json", "-o", "two"]);
     assert!(again.status.success());
     let table = |run: &str| fs::read(folder.path().join(run).join("poses.csv")).unwrap();
     assert_eq!(table("one"), table("two"));
-    // A file that is no cost model gives a warning, and the built-in one serves.
-    let warned = dock(
-        folder.path(),
-        &[
-            &pair[..],
-            &accuracy[..],
-            &["--rotations", "8", "-o", "three"],
-        ]
-        .concat(),
-    );
-    assert!(warned.status.success());
-    assert!(String::from_utf8_lossy(&warned.stderr).contains("knotdock calibrate"));
 
     for (more, word) in [
         (vec!["--accuracy", "1e-9"], "no setting"),
-        (vec!["--budget", "1e-6s"], "too few"),
         (vec!["--budget", "soon"], "--budget"),
         (vec!["--budget", "5s", "--rotations", "60"], "--rotations"),
         (
@@ -382,17 +348,13 @@ fn a_docking_within_an_accuracy_and_a_time() {
     }
 }
 
-/// A budget is a deadline: where the machine is slower than the cost model has it, the search stops, and what it
+/// A budget is a deadline: the search stops, and what it
 /// searched is recorded, so that the run repeats to the byte. It once went on to its last rotation, at four times the
 /// time allowed.
 #[test]
 fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     let folder = tempfile::tempdir().unwrap();
     let (receptor, ligand) = (case("helices_receptor.pdb"), case("helices_ligand.pdb"));
-    fs::create_dir(folder.path().join("knotdock")).unwrap();
-    // No machine is as fast: tens of thousands of rotations are expected to fit into a twentieth of a second.
-    let fast = SLOW.replace("1e-7", "1e-15");
-    fs::write(folder.path().join("knotdock/cost_model.json"), fast).unwrap();
     let pair = [receptor.as_str(), &ligand, "--poses", "50"];
     let budget = ["--budget", "0.05s", "--threads", "2", "-o", "one"];
     let output = dock(folder.path(), &[&pair[..], &budget].concat());
@@ -400,7 +362,6 @@ fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     let object: Value = serde_json::from_slice(&output.stdout).unwrap();
     let run = &object["run"];
     let planned = run["options"]["search"]["rotations"].as_u64().unwrap();
-    assert!(planned > 10_000);
     let searched = run["results"]["rotations"].as_u64().unwrap();
     assert!((1..planned).contains(&searched), "{searched} of {planned}");
     assert_eq!(run["options"]["stopped"]["rotations"], searched);
@@ -422,24 +383,4 @@ fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     let record = |run: &str| -> Value { serde_json::from_slice(&file(run, "run.json")).unwrap() };
     assert_eq!(record("one")["options"], record("two")["options"]);
     assert_eq!(record("one")["results"], record("two")["results"]);
-}
-
-/// Calibration writes a model that a docking then uses.
-#[test]
-fn calibration_is_used() {
-    let folder = tempfile::tempdir().unwrap();
-    let output = cargo_bin_cmd!("knotdock")
-        .env("XDG_CACHE_HOME", folder.path())
-        .args(["calibrate", "--json"])
-        .output()
-        .unwrap();
-    assert!(output.status.success());
-    let object: Value = serde_json::from_slice(&output.stdout).unwrap();
-    let file = folder.path().join("knotdock/cost_model.json");
-    assert_eq!(object["file"], file.display().to_string());
-    let written: Value = serde_json::from_slice(&fs::read(file).unwrap()).unwrap();
-    assert_eq!(written["cost_model"], object["cost_model"]);
-    for (name, seconds) in object["cost_model"].as_object().unwrap() {
-        assert!(seconds.as_f64().unwrap() > 0.0, "{name}");
-    }
 }

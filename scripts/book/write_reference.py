@@ -25,6 +25,8 @@ REFERENCE = ROOT / "docs" / "reference"
 EXAMPLES = ROOT / "structures" / "examples"
 SHARED = ("--json", "--quiet", "--verbose", "--help", "--version")
 """Options of all commands, described once."""
+HIDDEN = ("preset", "completions", "man")
+"""Commands that the list of the help leaves out."""
 DEFAULT = re.compile(r"\s*\[default: ([^\]]*)\]")
 POSSIBLE = re.compile(r"\.?\s*\[possible values: ([^\]]*)\]")
 
@@ -56,7 +58,12 @@ class Command:
     usage: str = ""
     groups: dict[str, list[Entry]] = field(default_factory=dict)
     commands: dict[str, str] = field(default_factory=dict)
+    subjects: dict[str, str] = field(default_factory=dict)
     examples: list[str] = field(default_factory=list)
+
+    @property
+    def summary(self) -> str:
+        return " ".join(self.about.split("\n\n")[0].split()).removesuffix(".")
 
 
 def cell(text: str) -> str:
@@ -113,8 +120,8 @@ def read(program: Path, words: list[str]) -> Command:
             name, held = "", []
         if re.match(r"\S.*:$", line):
             group = line[:-1]
-        elif group == "Commands":
-            read_command(command, line)
+        elif group == "Commands" or (not words and group != "Options"):
+            read_command(command, group, line)
         elif group == "Examples":
             command.examples += [line.strip()] if line.startswith("  ") else []
         elif re.match(r" {2,6}[-\[<]", line):
@@ -125,11 +132,12 @@ def read(program: Path, words: list[str]) -> Command:
     return command
 
 
-def read_command(command: Command, line: str) -> None:
+def read_command(command: Command, subject: str, line: str) -> None:
     """A line of a list of commands: a command with what it does, or more of that."""
     begun = re.match(r"  (\S+) +(.*)", line)
     if begun:
         command.commands[begun[1]] = begun[2]
+        command.subjects[begun[1]] = subject
     elif line.strip():
         last = list(command.commands)[-1]
         command.commands[last] += f" {line.strip()}"
@@ -137,9 +145,9 @@ def read_command(command: Command, line: str) -> None:
 
 
 def all_commands(program: Path) -> list[Command]:
-    """All commands in the order of the help, subcommands behind their own."""
+    """All commands in the order of the help, subcommands behind their own, and those that are not listed."""
     found = []
-    for word in read(program, []).commands:
+    for word in (*read(program, []).commands, *HIDDEN):
         command = read(program, [word])
         found.append(command)
         found.extend(read(program, [word, below]) for below in command.commands)
@@ -157,14 +165,18 @@ def table(entries: list[Entry], first: str) -> str:
 def commands_page(program: Path) -> str:
     """docs/reference/commands.md."""
     commands = all_commands(program)
-    whole = read(program, [])
+    subjects = read(program, []).subjects
+    top = [(command.name.split()[1], command) for command in commands if command.name.count(" ") == 1]
     parts = [
         "# Commands",
         "Written by `scripts/book/write_reference.py` from the help of each command. [recipes.md](recipes.md) has a "
         "command\nfor each question, and [options.md](options.md) every option.",
         "\n".join(
-            ["| command | what it does |", "|---|---|"]
-            + [f"| [`{word}`](#knotdock-{word}) | {cell(about)} |" for word, about in whole.commands.items()]
+            ["| subject | command | what it does |", "|---|---|---|"]
+            + [
+                f"| {subjects.get(word, 'Other')} | [`{word}`](#knotdock-{word}) | {cell(command.summary)} |"
+                for word, command in top
+            ]
         ),
     ]
     for command in commands:

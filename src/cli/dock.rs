@@ -63,10 +63,9 @@ pub struct Dock {
     accuracy: Option<f64>,
     /// End within a time on the clock, such as 5s or 2min.
     ///
-    /// Reading and writing are included. As many rotations are planned as are expected to fit, at most 56,250. If the
-    /// machine is slower than expected, the search stops earlier, so the same call need not give the same bytes.
-    /// run.json records where it stopped: `--rerun` of it gives the same bytes. `knotdock calibrate` measures how fast
-    /// this machine is.
+    /// Reading and writing are included. The search covers all orientations evenly at any time, and stops when what
+    /// follows it just fits, by the pace measured so far; at most 56,250 rotations are searched. The same call need not
+    /// give the same bytes. run.json records where it stopped: `--rerun` of it gives the same bytes.
     #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
     budget: Option<f64>,
     #[command(flatten)]

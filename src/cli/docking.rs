@@ -16,7 +16,6 @@ use crate::tradeoff::choice::{Chosen, Wanted, choose, deadline};
 use crate::tradeoff::cost_model::{CostModel, Workload};
 
 use crate::cli::arguments::native::NativeFiles;
-use crate::cli::calibrate::cost_model;
 use crate::cli::inputs::request::{Known, Request};
 use crate::cli::messages::brief::{expected_text, score_text};
 use crate::cli::messages::console::Console;
@@ -54,17 +53,16 @@ impl Docking {
         }
         request.bodies.describe(arrangement, console);
         let known = request.known(console)?;
-        let (prepared, chosen, deadline, model) = if wanted == Wanted::default() {
-            (request.plan(console)?, None, None, None)
+        let (prepared, chosen, deadline) = if wanted == Wanted::default() {
+            (request.plan(console)?, None, None)
         } else {
-            let (model, source) = cost_model(console);
-            let (prepared, chosen) = plan_within(wanted, (&model, &source), &mut request, console)?;
+            let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
             let end = wanted
                 .budget
                 .and_then(|budget| Duration::try_from_secs_f64(budget).ok())
                 .and_then(|budget| clock.monotonic.checked_add(budget));
-            let deadline = end.map(|end| deadline(&model, &prepared.plan, end));
-            (prepared, Some(chosen), deadline, Some(model))
+            let deadline = end.map(|end| deadline(&prepared.plan, end));
+            (prepared, Some(chosen), deadline)
         };
         let plan = &prepared.plan;
         let sides = arrangement.sides();
@@ -86,8 +84,7 @@ impl Docking {
             }
         }
         console.say(score_text(plan, sides));
-        let model = model.unwrap_or_else(|| cost_model(console).0);
-        let seconds = seconds_of(plan, &model);
+        let seconds = seconds_of(plan);
         console.say(expected_text(
             plan,
             seconds,
@@ -113,8 +110,8 @@ impl Docking {
     }
 
     /// Seconds that the search is expected to take on this machine.
-    pub fn expected_seconds(&self, model: &CostModel) -> f64 {
-        seconds_of(&self.prepared.plan, model)
+    pub fn expected_seconds(&self) -> f64 {
+        seconds_of(&self.prepared.plan)
     }
 
     /// The directory of the run, if it holds another run that is not to be replaced.
@@ -146,8 +143,8 @@ impl Docking {
 }
 
 /// Seconds that a search is expected to take.
-fn seconds_of(plan: &DockPlan, model: &CostModel) -> f64 {
-    model.seconds(&Workload::of(plan), plan.rotations, plan.in_flight())
+fn seconds_of(plan: &DockPlan) -> f64 {
+    CostModel::BUILT_IN.seconds(&Workload::of(plan), plan.rotations, plan.in_flight())
 }
 
 /// The refusal of a directory that holds something else, which `force` would replace.
@@ -162,7 +159,6 @@ pub fn held_by_another(directory: &Path, force: &str) -> Failure {
 /// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.
 fn plan_within(
     wanted: Wanted,
-    (model, source): (&CostModel, &str),
     request: &mut Request,
     console: Console,
 ) -> Result<(PreparedPair, Chosen), Failure> {
@@ -177,7 +173,7 @@ fn plan_within(
     request.options.search.rotations = rotations;
     let options = &mut request.options;
     let mut preparer = Preparer::new(request.bodies.pair(), options, &first);
-    let chosen = choose(wanted, (model, source), options, &mut preparer)
+    let chosen = choose(wanted, options, &mut preparer)
         .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
     let prepared = preparer
         .prepare(options)
@@ -186,7 +182,7 @@ fn plan_within(
         .predicted_error
         .map(|error| format!(" and an error of {error:.1e} of the best score"));
     console.detail(format!(
-        "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected, by the {} cost model, are {:.1} s{}",
+        "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected are {:.1} s{}",
         options.search.rotations,
         options.kernel.tolerance,
         match options.search.precision {
@@ -194,7 +190,6 @@ fn plan_within(
             Precision::Double => " --precision double",
         },
         prepared.plan.spacing,
-        if source == "built-in" { "built-in" } else { "calibrated" },
         chosen.predicted_seconds,
         error.unwrap_or_default()
     ));

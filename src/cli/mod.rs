@@ -6,7 +6,6 @@
 
 mod arguments;
 mod batch;
-mod calibrate;
 mod calls;
 mod collide;
 mod completions;
@@ -81,17 +80,38 @@ enum Command {
     Interface(Box<interface::InterfaceCommand>),
     Report(report::Report),
     Inspect(inspect::Inspect),
+    Sample(sample::Sample),
+    Collide(Box<collide::Collide>),
     Obstacle(Box<obstacle::Obstacle>),
     Morph(Box<morph::Morph>),
     Se3(se3::Se3),
-    Sample(sample::Sample),
-    Collide(Box<collide::Collide>),
     Tradeoff(Box<tradeoff::TradeoffCommand>),
-    Calibrate(calibrate::Calibrate),
+    #[command(hide = true)]
     Preset(preset::PresetCommand),
+    #[command(hide = true)]
     Completions(completions::Completions),
+    #[command(hide = true)]
     Man(completions::ManPages),
 }
+
+/// The commands that `knotdock --help` lists, by subject.
+const SUBJECTS: [(&str, &[&str]); 4] = [
+    ("Docking", &["dock", "batch", "merge"]),
+    (
+        "Results",
+        &[
+            "export",
+            "refine",
+            "evaluate",
+            "score",
+            "interface",
+            "report",
+            "inspect",
+        ],
+    ),
+    ("Solids", &["sample", "collide", "obstacle", "morph", "se3"]),
+    ("Accuracy", &["tradeoff"]),
+];
 
 /// Version, commit and features, as `--version` shows them.
 fn long_version() -> &'static str {
@@ -149,13 +169,12 @@ fn run(command: Command, console: Console) -> Result<u8, Failure> {
         Command::Interface(command) => return command.run(console),
         Command::Report(command) => command.run(console),
         Command::Inspect(command) => command.run(console),
+        Command::Sample(command) => command.run(console),
+        Command::Collide(command) => command.run(console),
         Command::Obstacle(command) => command.run(console),
         Command::Morph(command) => command.run(console),
         Command::Se3(command) => command.run(console),
-        Command::Sample(command) => command.run(console),
-        Command::Collide(command) => command.run(console),
         Command::Tradeoff(command) => command.run(console),
-        Command::Calibrate(command) => command.run(console),
         Command::Preset(command) => command.run(console),
         Command::Completions(shell) => shell.run(command_line(), console),
         Command::Man(pages) => pages.run(command_line(), console),
@@ -173,10 +192,38 @@ fn wants_json(arguments: &[OsString]) -> bool {
 
 /// The definition of the command line.
 fn command_line() -> clap::Command {
-    Cli::command()
+    by_subject(Cli::command())
         .mut_subcommands(with_negative_numbers)
         .mut_subcommands(dock::in_brief)
         .mut_subcommand("dock", dock::refusing_recorded)
+}
+
+/// A command line whose help lists the commands by subject: clap has one heading for all of them.
+fn by_subject(command: clap::Command) -> clap::Command {
+    // clap lists them once, so that it aligns, wraps and colours them. The headings go between.
+    let mut list = clap::Command::new("knotdock")
+        .disable_help_subcommand(true)
+        .help_template("{subcommands}");
+    for name in SUBJECTS.iter().flat_map(|(_, names)| *names) {
+        let about = command
+            .find_subcommand(name)
+            .and_then(clap::Command::get_about);
+        let listed = clap::Command::new(*name);
+        list = list.subcommand(listed.about(about.cloned().unwrap_or_default()));
+    }
+    let mut commands = list.render_help().ansi().to_string();
+    let styles = command.get_styles();
+    let (header, literal) = (styles.get_header(), styles.get_literal());
+    for (subject, names) in SUBJECTS {
+        let first = format!("  {literal}{}{literal:#}", names[0]);
+        let headed = format!("\n{header}{subject}:{header:#}\n{first}");
+        commands = commands.replacen(&first, &headed, 1);
+    }
+    let template = format!(
+        "{{about-with-newline}}\n{{usage-heading}} {{usage}}\n{commands}\n\
+         {header}Options:{header:#}\n{{options}}"
+    );
+    command.help_template(template)
 }
 
 /// The command line as read.
@@ -259,5 +306,21 @@ fn unparsed(error: &clap::Error) -> Failure {
             });
             Failure::input(first_paragraph(error)).remedy(remedy)
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_listed_command_has_one_subject() {
+        let cli = Cli::command();
+        let listed = cli
+            .get_subcommands()
+            .filter(|command| !command.is_hide_set());
+        let listed: Vec<&str> = listed.map(clap::Command::get_name).collect();
+        let names = SUBJECTS.iter().flat_map(|(_, names)| *names);
+        assert_eq!(listed, names.copied().collect::<Vec<&str>>());
     }
 }

@@ -14,6 +14,8 @@ use crate::tradeoff::cost_model::{CostModel, LADDER, Rung, Workload};
 pub const MIN_ROTATIONS: usize = 600;
 /// Most: 6 degrees, beyond which rotations cost time and find nothing.
 pub const MAX_ROTATIONS: usize = 56_250;
+/// So many times as fast as the cost model has it a machine may be and still use all of a budget.
+const FASTEST: f64 = 4.0;
 
 /// Requested accuracy and time of a run.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -31,9 +33,7 @@ pub struct Chosen {
     pub accuracy: Option<f64>,
     /// Seconds that were requested.
     pub budget_seconds: Option<f64>,
-    /// Where the cost model came from: `built-in`, or the file that `knotdock calibrate` wrote.
-    pub cost_model: String,
-    /// Seconds on the clock that the search is expected to take.
+    /// Seconds on the clock that the run is expected to take.
     pub predicted_seconds: f64,
     /// Error that is expected, where the setting was chosen by it.
     pub predicted_error: Option<f64>,
@@ -53,18 +53,6 @@ pub enum ChoiceError {
         /// The least error.
         least: f64,
     },
-    /// Less time than it takes.
-    #[error(
-        "{budget} s are too few: {fewest} rotations or more are expected to take {needed:.2} s at least"
-    )]
-    Budget {
-        /// Seconds that were allowed.
-        budget: f64,
-        /// The fewest seconds that they take.
-        needed: f64,
-        /// The fewest rotations.
-        fewest: usize,
-    },
 }
 
 impl ChoiceError {
@@ -73,18 +61,13 @@ impl ChoiceError {
         match self {
             Self::Pair(error) => error.remedy(),
             Self::Accuracy { least, .. } => format!("ask for an accuracy of {least:e} or more"),
-            Self::Budget { .. } => {
-                "allow more time or more --threads, run `knotdock calibrate` if the machine is not the slow one that the estimate takes it \
-                 for, or choose --rotations"
-                    .to_owned()
-            }
         }
     }
 }
 
 /// The deadline of a planned run that is to end at `end`, by what the model expects it to take.
-pub fn deadline(model: &CostModel, plan: &DockPlan, end: Instant) -> Deadline {
-    let (model, work) = (*model, Workload::of(plan));
+pub fn deadline(plan: &DockPlan, end: Instant) -> Deadline {
+    let (model, work) = (CostModel::BUILT_IN, Workload::of(plan));
     let threads = plan.in_flight();
     let rotation = model.rotation_seconds(&work) / threads as f64;
     Deadline::new(end, rotation, move |rotations| {
@@ -98,7 +81,6 @@ pub fn deadline(model: &CostModel, plan: &DockPlan, end: Instant) -> Deadline {
 /// [`ChoiceError`].
 pub fn choose(
     wanted: Wanted,
-    (model, source): (&CostModel, &str),
     options: &mut DockOptions,
     preparer: &mut Preparer,
 ) -> Result<Chosen, ChoiceError> {
@@ -118,22 +100,21 @@ pub fn choose(
     let draft = preparer.prepare(&options.changed(|options| options.search.rotations = 4))?;
     let work = Workload::of(&draft.plan);
     let threads = draft.plan.most_in_flight();
+    let model = CostModel::BUILT_IN;
+    let mut expected = f64::INFINITY;
     if let Some(budget) = wanted.budget {
         let most = options.search.fine_rotations.unwrap_or(MAX_ROTATIONS);
         let range = MIN_ROTATIONS..=most.clamp(MIN_ROTATIONS, MAX_ROTATIONS);
-        options.search.rotations = model
-            .rotations_within(&work, budget, threads, range)
-            .map_err(|needed| ChoiceError::Budget {
-                budget,
-                needed,
-                fewest: MIN_ROTATIONS,
-            })?;
+        // The deadline ends the search. What it has searched by then is nearly as even as a set of that size.
+        options.search.rotations = model.rotations_within(&work, FASTEST * budget, threads, range);
+        expected = budget;
     }
     Ok(Chosen {
         accuracy: wanted.accuracy,
         budget_seconds: wanted.budget,
-        cost_model: source.to_owned(),
-        predicted_seconds: model.seconds(&work, options.search.rotations, threads),
+        predicted_seconds: model
+            .seconds(&work, options.search.rotations, threads)
+            .min(expected),
         predicted_error,
     })
 }

@@ -8,7 +8,6 @@
 
 pub mod advice;
 mod agreement;
-pub mod calibrate;
 mod change;
 pub mod choice;
 pub mod cost_model;

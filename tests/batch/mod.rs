@@ -418,23 +418,28 @@ fn a_directory_has_one_batch() {
     assert_eq!(fs::read(out.join("results.csv")).unwrap(), first);
 }
 
-/// A column of another program's word was refused with a list of nothing.
+/// A column of an unknown name was refused with a list of nothing.
 #[test]
-fn words_of_the_field_are_explained_in_columns_and_options() {
+fn a_misspelled_column_or_option_is_refused_with_a_remedy() {
     let folder = place();
     write_pairs(
         folder.path(),
-        "receptor,ligand,ncores\nhelices_receptor.pdb,helices_ligand.pdb,2\n",
+        "receptor,ligand,rotatoins\nhelices_receptor.pdb,helices_ligand.pdb,24\n",
     );
     let refused = batch(folder.path(), "batch in/pairs.csv -o out");
-    let said = String::from_utf8_lossy(&refused.stderr);
+    let reported = String::from_utf8_lossy(&refused.stderr);
     assert_eq!(refused.status.code(), Some(2));
-    assert!(
-        said.contains("line 2") && said.contains("--threads N"),
-        "{said}"
-    );
-    let refused = batch(folder.path(), "batch in/pairs.csv -o out -- --ambig=x");
-    let said = String::from_utf8_lossy(&refused.stderr);
-    assert_eq!(refused.status.code(), Some(2));
-    assert!(said.contains("--active-receptor"), "{said}");
+    for part in ["line 2", "is `--rotations` meant?"] {
+        assert!(reported.contains(part), "{part}: {reported}");
+    }
+    for (option, remedy) in [
+        ("--rotatoins=24", "is `--rotations` meant?"),
+        ("--contact-weight=2", "--config terms.contact_weight=VALUE"),
+    ] {
+        let words = format!("batch in/pairs.csv -o out -- {option}");
+        let refused = batch(folder.path(), &words);
+        let reported = String::from_utf8_lossy(&refused.stderr);
+        assert_eq!(refused.status.code(), Some(2));
+        assert!(reported.contains(remedy), "{reported}");
+    }
 }

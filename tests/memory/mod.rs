@@ -18,8 +18,10 @@ use serde_json::Value;
 /// How far the peak may lie above the limit.
 const OVER: f64 = 1.05;
 /// How far the limit may lie above the peak: one that refuses without need is no help. It is 1.1 to 1.6 times the peak
-/// where all is known beforehand, and 2.1 times where poses form few clusters, since each may be a row.
-const SPARE: f64 = 2.4;
+/// where all is known beforehand.
+const SPARE: f64 = 1.8;
+/// The same where poses form few clusters: each may be a row. It is 2.1 times the peak.
+const SPARE_OF_CLUSTERS: f64 = 2.4;
 
 fn docked(folder: &Path, scene: &Scene, memory: &str) -> Output {
     let output = cargo_bin_cmd!("knotdock")
@@ -90,7 +92,11 @@ fn keeps_to_what_is_named(folder: &Path, scene: &Scene) {
         machine["memory_stage"]["stage"]
     );
     assert!(peak <= OVER * allowed, "{name}: {peak} bytes of {allowed}");
-    assert!(allowed <= SPARE * peak, "{name}: {peak} bytes of {allowed}");
+    let spare = match name {
+        "many poses in clusters" => SPARE_OF_CLUSTERS,
+        _ => SPARE,
+    };
+    assert!(allowed <= spare * peak, "{name}: {peak} bytes of {allowed}");
 }
 
 #[test]

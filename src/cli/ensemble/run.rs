@@ -15,7 +15,6 @@ use serde_json::Value;
 
 use crate::cli::arguments::native::NativeFiles;
 use crate::cli::arguments::options::GivenOptions;
-use crate::cli::calibrate::cost_model;
 use crate::cli::docking::{Clock, Docking, held_by_another};
 use crate::cli::ensemble::laid::{Laid, LaidSides};
 use crate::cli::ensemble::place::Place;
@@ -135,9 +134,8 @@ impl Ensemble {
                 .memory_bytes()
                 .max(self.planned(largest, console.silent())?.memory_bytes()),
         };
-        let (model, _) = cost_model(console);
         let count = self.members().len();
-        let each = first.expected_seconds(&model);
+        let each = first.expected_seconds();
         let seconds = each * count as f64;
         let [receptors, ligands] = self.laid.sides.each_ref().map(Vec::len);
         console.say(format!(

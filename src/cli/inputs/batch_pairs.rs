@@ -210,8 +210,7 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
     }
 }
 
-/// The command line of a pair; an error comes with what to do about it, where the field's word for something is at
-/// fault.
+/// The command line of a pair; an error comes with a remedy if one is known.
 fn command(
     row: &PairRow,
     run: &Path,

@@ -1,6 +1,5 @@
 //! Records of runs in JSON: what was run, on which inputs, with which outcome.
 
-pub mod cost_model_file;
 pub mod ensemble_record;
 pub mod input_record;
 pub mod manifest;

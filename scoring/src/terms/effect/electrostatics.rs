@@ -90,14 +90,32 @@ mod tests {
         (20.0, 77.183718199702),
     ];
 
+    /// Distances in Å with the energies of two unit charges, kcal/mol.
+    const ENERGY: [(f64, f64); 4] = [
+        (0.0, 19.869675837503),
+        (3.0, 5.645031590875),
+        (5.0, 2.257540055030),
+        (9.0, 0.343250780475),
+    ];
+
     #[test]
     fn the_dielectric_goes_from_that_of_contact_to_that_of_water() {
         assert!((dielectric(0.0) - 1.3465).abs() < 1e-3);
         assert!((dielectric(1e3) - 78.4).abs() < 1e-9);
-        // Coulomb's law but for smoothing and taper, which are slight at 5 Å.
-        let plain = COULOMB / (dielectric(5.0) * 5.0);
-        assert!(energy(5.0) < plain && energy(5.0) > 0.75 * plain);
         assert_eq!(energy(12.0), 0.0);
+    }
+
+    /// Coulomb's law at the smoothed distance (d^2 + 4)^(1/2), halfway down the taper at 9 Å: in 50-digit decimal
+    /// arithmetic.
+    #[test]
+    fn the_energy_is_that_of_smoothed_charges() {
+        for (distance, expected) in ENERGY {
+            let found = energy(distance);
+            assert!(
+                (found - expected).abs() < 1e-9 * expected,
+                "{distance}: {found}"
+            );
+        }
     }
 
     /// Between contact and water the dielectric is a sigmoid of Mehler & Solmajer: it solves d eps/ds = l (eps - A)
