@@ -58,7 +58,7 @@ def screen(
         pairs: a table of pairs: a path, or rows (a DataFrame or a list of dicts) with columns `receptor`, `ligand` and
             perhaps `name` and options of `dock`.
         client: a client of any cluster: `Client(LocalCluster())`, dask-jobqueue on Slurm, Kubernetes.
-        output: directory that all workers see.
+        output: directory that all workers see; the shards are in its folder `batch`.
         dock: options of `knotdock.dock` for all pairs.
         shards: number of shards; by default one for 50 pairs, and four a thread of the cluster at least. A screen that
             goes on keeps its own.

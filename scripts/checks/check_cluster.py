@@ -159,7 +159,7 @@ def by_dask(folder, pairs, expected):
         cluster.adapt(minimum=2, maximum=2)
         with Client(cluster) as client:
             client.wait_for_workers(2, timeout=120)
-            killer = threading.Thread(target=kill_one, args=(["dask", "worker", "--nthreads 1", "--name"], out))
+            killer = threading.Thread(target=kill_one, args=(["dask", "worker", "--nthreads 1", "--name"], out / "batch"))
             killer.start()
             done = knotdock.screen(pairs, client, output=out, dock=DOCK, shards=SHARDS)
             killer.join()
@@ -168,8 +168,8 @@ def by_dask(folder, pairs, expected):
     poses = pandas.read_parquet(done["poses"]).sort_values(["name", "rank"]).reset_index(drop=True)
     plain = knotdock.read_poses(expected).sort_values(["name", "rank"]).reset_index(drop=True)
     pandas.testing.assert_frame_equal(poses, plain, check_dtype=False)
-    knotdock.merge(out)
-    same(out, expected, "Dask on Slurm")
+    knotdock.merge(out / "batch")
+    same(out / "batch", expected, "Dask on Slurm")
 
 
 def main():

@@ -118,7 +118,10 @@ impl Refine {
 
     /// Refuses a directory with poses of other ranks, before anything is refined: its table would not have them.
     fn refuse_other_ranks(&self, folder: &Path, rows: &[PoseRow]) -> Result<(), Failure> {
-        let Ok(table) = PoseTable::read(&folder.join(TABLE)) else {
+        let path = folder.join(TABLE);
+        // A pipe there would be waited for; it is refused when the table is written.
+        let table = path.is_file().then(|| PoseTable::read(&path).ok());
+        let Some(table) = table.flatten() else {
             return Ok(());
         };
         let ranks = |rows: &[PoseRow]| rows.iter().map(|row| row.rank).collect::<Vec<_>>();

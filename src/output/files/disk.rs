@@ -52,14 +52,14 @@ pub(super) fn open(path: &Path, options: &mut OpenOptions) -> io::Result<File> {
         use std::os::unix::fs::OpenOptionsExt;
         options.custom_flags((OFlags::NOFOLLOW | OFlags::NONBLOCK).bits().cast_signed());
     }
+    let none = || io::Error::new(io::ErrorKind::InvalidInput, "it is a link, or no file");
+    if !path.symlink_metadata()?.is_file() {
+        return Err(none());
+    }
     let file = options.open(path)?;
-    let is_file = file.metadata()?.is_file() && path.symlink_metadata()?.is_file();
-    match is_file {
+    match file.metadata()?.is_file() {
         true => Ok(file),
-        false => Err(io::Error::new(
-            io::ErrorKind::InvalidInput,
-            "it is a link, or no file",
-        )),
+        false => Err(none()),
     }
 }
 

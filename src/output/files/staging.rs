@@ -280,6 +280,11 @@ pub(super) fn locked(directory: &Path) -> Result<(PathBuf, Made, Lock), FileErro
 /// # Errors
 /// [`FileError`] when it cannot be put back.
 pub fn put_back(directory: &Path) -> Result<(), FileError> {
+    let lock = lock_beside(directory);
+    if lock.symlink_metadata().is_ok() {
+        // One that a kill left goes; one that is held stays, and so does whatever else has the name.
+        drop(Lock::take(&lock));
+    }
     let is_aside = directory.symlink_metadata().is_err() && aside(directory).is_dir();
     is_aside.then(|| locked(directory)).transpose().map(drop)
 }
@@ -390,7 +395,7 @@ impl OwnFiles {
     pub fn add(&mut self, place: &Path, folder: &Path) -> io::Result<()> {
         for record in [RUN, ENSEMBLE, TRADEOFF, ADDED] {
             let path = folder.join(record);
-            if !place.join(&path).is_file() {
+            if !is_of_us(&place.join(&path)) {
                 continue;
             }
             let listed = read_record(&place.join(&path))?;

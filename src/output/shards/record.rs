@@ -122,10 +122,7 @@ impl BatchRecord {
         }
         std::fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
         let lock = Lock::take(&folder.join(LOCK))?;
-        let mut left: Vec<PathBuf> = Vec::new();
-        for name in [RECORD, RESULTS, POSES, ATTEMPTS] {
-            left.extend(leftovers(&folder.join(name)));
-        }
+        let left = left_in(folder);
         match Self::read(folder)? {
             Some(found) => self.check(&found, folder)?,
             None => {
@@ -144,9 +141,9 @@ impl BatchRecord {
         Ok((lock, left))
     }
 
-    /// Something in a folder that is not left of a command that was to begin a batch there.
+    /// Something in a folder that no ended command of a batch left there.
     pub(super) fn others_in(folder: &Path) -> Result<Option<String>, FileError> {
-        let left = leftovers(&folder.join(RECORD));
+        let left = left_in(folder);
         let is_left = |name: &str| left.iter().any(|path| path.ends_with(name));
         let mut names = names_in(folder)?.into_iter();
         Ok(names.find(|name| name != LOCK && !is_left(name)))
@@ -205,6 +202,14 @@ impl BatchRecord {
             ),
         }
     }
+}
+
+/// What ended commands left of a batch's files in a folder.
+fn left_in(folder: &Path) -> Vec<PathBuf> {
+    let files = [RECORD, RESULTS, POSES, ATTEMPTS].into_iter();
+    files
+        .flat_map(|name| leftovers(&folder.join(name)))
+        .collect()
 }
 
 const OTHER: &str =
