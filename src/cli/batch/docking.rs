@@ -26,7 +26,7 @@ use crate::cli::report::write_listed;
 const KILLS: usize = 10;
 
 /// What is done with the pairs of a batch or a shard.
-pub struct Batching {
+pub struct BatchRun {
     /// The directory of the batch.
     pub directory: PathBuf,
     /// Where the growing files are while pairs are docked; in their place where none is given.
@@ -43,7 +43,7 @@ pub struct Batching {
     pub is_shard: bool,
 }
 
-impl Batching {
+impl BatchRun {
     /// Docks those of the pairs that are not done; the exit code.
     pub fn dock(self, pairs: Vec<Pair>, console: Console) -> Result<ExitCode, Failure> {
         let place = self.place()?;
@@ -56,7 +56,7 @@ impl Batching {
             .as_ref()
             .map_or(place.as_path(), Scratch::folder)
             .to_owned();
-        let mut watch = Growing {
+        let mut watch = ResultFiles {
             part: Part::open(&folder, &self.record)?,
             pairs: Vec::new(),
             entries: vec![Value::Null; pairs.len()],
@@ -64,7 +64,7 @@ impl Batching {
             console,
         };
         let docked = self.dock_all(pairs, &mut watch);
-        let Growing {
+        let ResultFiles {
             part,
             entries,
             code,
@@ -137,7 +137,7 @@ impl Batching {
     }
 
     /// Docks the pairs that wait.
-    fn dock_all(&self, pairs: Vec<Pair>, watch: &mut Growing) -> Result<(), Failure> {
+    fn dock_all(&self, pairs: Vec<Pair>, watch: &mut ResultFiles) -> Result<(), Failure> {
         let console = watch.console;
         let (lost, count) = (watch.part.lost, pairs.len());
         if lost > 0 {
@@ -234,7 +234,7 @@ fn result(pair: &Pair) -> PairResult {
 }
 
 /// The files of the batch, to which each pair is added.
-struct Growing<'a> {
+struct ResultFiles<'a> {
     part: Part,
     /// Row in the table and result of the pairs that are docked now, by their turns.
     pairs: Vec<(usize, PairResult)>,
@@ -244,7 +244,7 @@ struct Growing<'a> {
     console: Console<'a>,
 }
 
-impl Watch<DockedPair> for Growing<'_> {
+impl Watch<DockedPair> for ResultFiles<'_> {
     fn start(&mut self, place: usize) -> Result<(), Failure> {
         self.console.go_on()?;
         Ok(self.part.start(&self.pairs[place].1.name)?)

@@ -16,7 +16,7 @@ use crate::output::tables::report::counted;
 use clap::Args;
 
 use crate::cli::arguments::program::is_of_program;
-use crate::cli::batch::docking::Batching;
+use crate::cli::batch::docking::BatchRun;
 use crate::cli::batch::limits::Limits;
 use crate::cli::inputs::batch_pairs::{Pairs, pairs};
 use crate::cli::inputs::recent_molecules::keep_recent;
@@ -116,7 +116,7 @@ impl Batch {
             .map(|pair| (pair.name.clone(), pair.row.checksum()));
         let names = names.collect();
         let kept = (self.keep, rows.0);
-        let batching = Batching {
+        let run = BatchRun {
             record: BatchRecord::new(shard, (total, sha256), self.options, kept, names),
             directory,
             scratch: self.scratch,
@@ -125,7 +125,7 @@ impl Batch {
             retry_failed: self.retry_failed,
             is_shard: self.shard.is_some(),
         };
-        let code = batching.dock(own, console)?;
+        let code = run.dock(own, console)?;
         Ok(if self.failures_ok { 0 } else { code.0 })
     }
 }

@@ -6,7 +6,8 @@
 use std::path::{Path, PathBuf};
 
 use crate::output::files::added::Addition;
-use crate::output::files::staging::{ENSEMBLE, MEMBERS, Stage, Staging, is_run};
+use crate::output::files::own_files::{ENSEMBLE, MEMBERS, is_run};
+use crate::output::files::staging::{Stage, Staging};
 
 use crate::cli::messages::failure::Failure;
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::ensemble::table::{DockedMember, joint};
-use crate::output::files::staging::MEMBERS;
+use crate::output::files::own_files::MEMBERS;
 use crate::output::records::ensemble_record::RECORD;
 use crate::output::tables::batch_results::RunSummary;
 use crate::output::tables::poses::PoseTable;

@@ -3,8 +3,9 @@
 use std::path::Path;
 
 use crate::ensemble::table::{DockedMember, JointTable};
+use crate::output::files::own_files::MEMBERS;
 use crate::output::files::seal::REPORT;
-use crate::output::files::staging::{MEMBERS, Stage};
+use crate::output::files::staging::Stage;
 use crate::output::files::viewers::ViewedComplex;
 use crate::output::files::whole_file::to_json;
 use crate::output::records::ensemble_record::{

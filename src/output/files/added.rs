@@ -16,8 +16,9 @@ use crate::bounded_read::{MAX_RECORD, read_bounded_file};
 use super::checksum::sha256_of_file;
 use super::disk;
 use super::lock::Lock;
+use super::own_files::{ADDED, ENSEMBLE, OwnFiles, is_of_us, is_run, name_of};
 use super::seal::REPORT;
-use super::staging::{ADDED, ENSEMBLE, Made, OwnFiles, Stage, is_of_us, is_run, locked, name_of};
+use super::staging::{Made, Stage, locked};
 use super::whole_file::{FileError, is_link, leftovers, parent, to_json, write_whole};
 
 /// Files that are being added.

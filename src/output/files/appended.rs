@@ -55,11 +55,16 @@ impl AppendedFile {
         })
     }
 
-    /// Appends an entry, to the device. One that cannot be written whole is taken back.
+    /// Where the next entry begins, in bytes.
+    pub fn end(&self) -> u64 {
+        self.length
+    }
+
+    /// Appends an entry, to the device; where it begins and ends. One that cannot be written whole is taken back.
     ///
     /// # Errors
     /// [`FileError`].
-    pub fn append(&mut self, entry: &[u8]) -> Result<(), FileError> {
+    pub fn append(&mut self, entry: &[u8]) -> Result<(u64, u64), FileError> {
         let written = self.write(entry);
         if written.is_err() {
             // What cannot be taken back now is cut off when the file is opened again.
@@ -67,8 +72,9 @@ impl AppendedFile {
             let _ = self.file.seek(SeekFrom::Start(self.length));
         }
         written.map_err(|source| FileError::writing(&self.path, source))?;
+        let start = self.length;
         self.length += entry.len() as u64;
-        Ok(())
+        Ok((start, self.length))
     }
 
     fn write(&mut self, entry: &[u8]) -> io::Result<()> {

@@ -1,4 +1,4 @@
-//! Files of a folder that is this program's own: read without following links, waiting for pipes or taking more than a
+//! Folders and files that are this program's own: made, cleared, and read without following links, waiting for pipes or taking more than a
 //! bound.
 
 use std::fs::File;
@@ -21,6 +21,23 @@ pub fn names_in(folder: &Path) -> Result<Vec<String>, FileError> {
     Ok(names
         .map(|name| name.to_string_lossy().into_owned())
         .collect())
+}
+
+/// Makes a folder and those above it, where they are not there.
+///
+/// # Errors
+/// [`FileError`] when it cannot be made.
+pub fn make_folder(path: &Path) -> Result<(), FileError> {
+    let made = disk::create_dir_all(path).map(drop);
+    made.map_err(|source| FileError::unwritable(path, source))
+}
+
+/// Removes files of a folder, and the folder if nothing is left in it. What cannot be removed stays.
+pub fn clear(folder: &Path, names: &[&str]) {
+    for name in names {
+        let _ = disk::remove_file(&folder.join(name));
+    }
+    let _ = disk::remove_dir(folder);
 }
 
 /// Opens a file to be read.

@@ -12,6 +12,7 @@ pub mod folder;
 pub mod lock;
 pub mod model_file;
 pub mod molecule_file;
+pub mod own_files;
 pub mod sample_picture;
 pub mod seal;
 pub mod staging;

@@ -15,7 +15,7 @@ use crate::output::records::program::Program;
 /// Name of the record in the directory of an ensemble.
 pub const RECORD: &str = "ensemble.json";
 /// Name of the folder in it that holds the members' runs.
-pub use crate::output::files::staging::MEMBERS;
+pub use crate::output::files::own_files::MEMBERS;
 
 /// Number of the layout of `ensemble.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 2;

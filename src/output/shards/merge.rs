@@ -10,7 +10,7 @@ use super::members::copy_range;
 use super::part::{Index, Range};
 use super::record::BatchRecord;
 use super::{POSES, SHARDS, Shard, pose_rows};
-use crate::output::files::folder::open_own;
+use crate::output::files::folder::{make_folder, open_own};
 use crate::output::files::whole_file::{FileError, StagedFile, is_link, leftovers};
 use crate::output::tables::batch_results::{RESULTS, head};
 
@@ -33,7 +33,7 @@ pub struct Merged {
 }
 
 /// A pair of the batch: its shard, and where its row and its poses are in the shard's files.
-struct Place {
+struct MergedPair {
     shard: usize,
     is_done: bool,
     row: Range,
@@ -56,7 +56,7 @@ pub fn merge(
         |shard: Shard, directory: usize| directories[directory].join(SHARDS).join(shard.folder());
     let mut shards: Vec<(Shard, usize)> = Vec::new();
     let mut first: Option<BatchRecord> = None;
-    let mut pairs: BTreeMap<usize, Place> = BTreeMap::new();
+    let mut pairs: BTreeMap<usize, MergedPair> = BTreeMap::new();
     for (shard, directory) in shards_in(directories)? {
         let folder = &folder_of(shard, directory);
         let Some(record) = BatchRecord::read(folder)? else {
@@ -81,13 +81,13 @@ pub fn merge(
         let mut found = Index::of(folder, record.keep.has_poses())?.pairs;
         for (place, (name, _)) in record.own.iter().enumerate() {
             if let Some(pair) = found.remove(name) {
-                let place_of_pair = Place {
+                let merged = MergedPair {
                     shard: shards.len(),
                     is_done: pair.is_done,
                     row: pair.row,
                     poses: pair.poses,
                 };
-                pairs.insert(shard.row(place), place_of_pair);
+                pairs.insert(shard.row(place), merged);
             }
         }
         if let Some(stray) = found.keys().min() {
@@ -112,8 +112,8 @@ pub fn merge(
     if is_link(out) {
         return Err(FileError::link(out));
     }
-    fs::create_dir_all(out).map_err(|source| FileError::unwritable(out, source))?;
-    let copied = |name: &str, head: &[u8], part: fn(&Place) -> Option<Range>| {
+    make_folder(out)?;
+    let copied = |name: &str, head: &[u8], part: fn(&MergedPair) -> Option<Range>| {
         let path = out.join(name);
         let staged = StagedFile::own(&path, |file| {
             file.write_all(head)?;
@@ -220,7 +220,7 @@ fn no_shards(directories: &[PathBuf]) -> FileError {
 fn complete(
     record: &BatchRecord,
     there: impl Iterator<Item = usize>,
-    pairs: &BTreeMap<usize, Place>,
+    pairs: &BTreeMap<usize, MergedPair>,
     at: &Path,
 ) -> Result<(), FileError> {
     let count = record.shard.count();

@@ -22,8 +22,8 @@ pub struct Part {
     results: AppendedFile,
     poses: Option<AppendedFile>,
     attempts: AppendedFile,
-    /// Whether each pair was docked or failed at last.
-    is_done: HashMap<String, bool>,
+    /// Each pair that was docked or failed.
+    pairs: HashMap<String, PairFiles>,
     /// How often each pair was started.
     started: HashMap<String, usize>,
     /// Pairs that were listed as done and have to be docked again, since a file is damaged.
@@ -56,11 +56,7 @@ impl Part {
                 false => None,
             },
             attempts: AppendedFile::open(&attempts, whole)?,
-            is_done: found
-                .pairs
-                .into_iter()
-                .map(|(name, pair)| (name, pair.is_done))
-                .collect(),
+            pairs: found.pairs,
             started,
             lost: found.lost,
         };
@@ -76,7 +72,7 @@ impl Part {
 
     /// Whether a pair was docked, or failed; `None` for neither.
     pub fn is_done(&self, name: &str) -> Option<bool> {
-        self.is_done.get(name).copied()
+        self.pairs.get(name).map(|pair| pair.is_done)
     }
 
     /// How often a pair was started.
@@ -86,8 +82,8 @@ impl Part {
 
     /// Pairs that were docked, and pairs that failed.
     pub fn counts(&self) -> [usize; 2] {
-        let done = self.is_done.values().filter(|done| **done).count();
-        [done, self.is_done.len() - done]
+        let done = self.pairs.values().filter(|pair| pair.is_done).count();
+        [done, self.pairs.len() - done]
     }
 
     /// Notes that a pair is started.
@@ -109,12 +105,16 @@ impl Part {
         result: &PairResult,
         poses: Option<&PosesOfPair>,
     ) -> Result<(), FileError> {
-        if let (Some(file), Some(poses)) = (&mut self.poses, poses) {
-            file.append(poses.bytes())?;
-        }
-        self.results.append(&row(result))?;
-        self.is_done
-            .insert(result.name.clone(), result.outcome.is_ok());
+        let poses = match (&mut self.poses, poses) {
+            (Some(file), Some(poses)) => Some(file.append(poses.bytes())?),
+            _ => None,
+        };
+        let pair = PairFiles {
+            is_done: result.outcome.is_ok(),
+            row: self.results.append(&row(result))?,
+            poses,
+        };
+        self.pairs.insert(result.name.clone(), pair);
         Ok(())
     }
 
@@ -123,21 +123,16 @@ impl Part {
     /// # Errors
     /// [`FileError`].
     pub fn finish(self, record: &BatchRecord) -> Result<(), FileError> {
-        let Self { folder, poses, .. } = self;
-        let found = Index::of(&folder, poses.is_some())?;
-        let pairs = || {
-            record
-                .own
-                .iter()
-                .filter_map(|(name, _)| found.pairs.get(name))
-        };
-        let header = pose_rows::header().map_err(|error| FileError::writing(&folder, error))?;
-        let of_poses: Vec<Range> = pairs().filter_map(|pair| pair.poses).collect();
-        if poses.is_some() {
-            put_in_order(&folder.join(POSES), &header, &of_poses, found.poses_end)?;
+        let names = record.own.iter().map(|(name, _)| name);
+        let pairs: Vec<&PairFiles> = names.filter_map(|name| self.pairs.get(name)).collect();
+        let folder = &self.folder;
+        if let Some(file) = &self.poses {
+            let header = pose_rows::header().map_err(|error| FileError::writing(folder, error))?;
+            let poses: Vec<Range> = pairs.iter().filter_map(|pair| pair.poses).collect();
+            put_in_order(&folder.join(POSES), &header, &poses, file.end())?;
         }
-        let rows: Vec<Range> = pairs().map(|pair| pair.row).collect();
-        put_in_order(&folder.join(RESULTS), &head(), &rows, found.results_end)
+        let rows: Vec<Range> = pairs.iter().map(|pair| pair.row).collect();
+        put_in_order(&folder.join(RESULTS), &head(), &rows, self.results.end())
     }
 }
 
@@ -161,8 +156,9 @@ fn put_in_order(path: &Path, head: &[u8], parts: &[Range], end: u64) -> Result<(
     sorted.place()
 }
 
-/// A pair of a part.
-pub(super) struct Found {
+/// What the files of a batch hold of a pair.
+#[derive(Debug)]
+pub(super) struct PairFiles {
     /// Whether it was docked.
     pub is_done: bool,
     /// Its row.
@@ -174,7 +170,7 @@ pub(super) struct Found {
 /// What the files of a part hold.
 pub(super) struct Index {
     /// Each pair by its name: of several rows or poses the last ones count.
-    pub pairs: HashMap<String, Found>,
+    pub pairs: HashMap<String, PairFiles>,
     results_end: u64,
     poses_end: u64,
     lost: usize,
@@ -221,7 +217,7 @@ impl Index {
                     return false;
                 };
                 let poses = poses.get(&name).copied().filter(|_| is_done);
-                let pair = Found {
+                let pair = PairFiles {
                     is_done,
                     row: range,
                     poses,

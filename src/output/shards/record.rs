@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 
 use super::{ATTEMPTS, POSES, Shard};
 use crate::bounded_read::MAX_RECORD;
-use crate::output::files::folder::{names_in, read_own};
+use crate::output::files::folder::{make_folder, names_in, read_own};
 use crate::output::files::lock::Lock;
 use crate::output::files::whole_file::{FileError, StagedFile, is_link, leftovers};
 use crate::output::records::program::VERSION_WITH_COMMIT;
@@ -120,7 +120,7 @@ impl BatchRecord {
         if is_link(folder) {
             return Err(FileError::link(folder));
         }
-        std::fs::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
+        make_folder(folder)?;
         let lock = Lock::take(&folder.join(LOCK))?;
         let left = left_in(folder);
         match Self::read(folder)? {

@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 use super::record::{BatchRecord, RECORD};
 use super::{ATTEMPTS, POSES};
 use crate::output::files::checksum::sha256;
-use crate::output::files::folder::open_own;
+use crate::output::files::folder::{clear, make_folder, open_own};
 use crate::output::files::whole_file::{FileError, StagedFile, is_link};
 use crate::output::tables::batch_results::RESULTS;
 
@@ -27,31 +27,29 @@ impl Scratch {
     /// # Errors
     /// [`FileError`] where a folder of this name is another's, and where a file cannot be read or written.
     pub fn open(scratch: &Path, place: &Path, record: &BatchRecord) -> Result<Self, FileError> {
-        let unwritable = |source: io::Error| FileError::unwritable(scratch, source);
-        fs::create_dir_all(scratch).map_err(unwritable)?;
-        let place = place.canonicalize().map_err(unwritable)?;
+        make_folder(scratch)?;
+        let unreadable = |source| FileError::reading(place, source);
+        let place = place.canonicalize().map_err(unreadable)?;
         // Places of the same name are told apart by where they are.
         let sum = sha256(place.to_string_lossy().as_bytes());
         let name = place.file_name().unwrap_or_default().to_string_lossy();
         let folder = scratch.join(format!("knotdock-{}-{name}", &sum[..12]));
-        let taken = "the scratch folder is not empty and not this batch's";
-        let taken = || {
-            Err(FileError::refused(
-                &folder,
-                taken,
-                "remove it, or name another --scratch",
-            ))
-        };
         if is_link(&folder) {
             return Err(FileError::link(&folder));
         }
-        fs::create_dir_all(&folder).map_err(unwritable)?;
+        make_folder(&folder)?;
         match BatchRecord::read(&folder)? {
             Some(found) if found == *record => {}
             None if BatchRecord::others_in(&folder)?.is_none() => {
                 record.write(&folder)?;
             }
-            _ => return taken(),
+            _ => {
+                return Err(FileError::refused(
+                    &folder,
+                    "the scratch folder is not empty and not this batch's",
+                    "remove it, or name another --scratch",
+                ));
+            }
         }
         let length =
             |folder: &Path| fs::metadata(folder.join(RESULTS)).map_or(0, |found| found.len());
@@ -72,11 +70,8 @@ impl Scratch {
     /// [`FileError`]; the files are still here then.
     pub fn copy_out(self) -> Result<(), FileError> {
         copy(&self.folder, &self.place)?;
-        for name in FILES.into_iter().chain([RECORD]) {
-            // What stays is found by the next call, or is in nobody's way.
-            let _ = fs::remove_file(self.folder.join(name));
-        }
-        let _ = fs::remove_dir(&self.folder);
+        // What stays is found by the next call, or is in nobody's way.
+        clear(&self.folder, &[POSES, RESULTS, ATTEMPTS, RECORD]);
         Ok(())
     }
 }

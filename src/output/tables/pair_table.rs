@@ -33,7 +33,7 @@ impl PairRow {
     /// The beginning of SHA-256 of what it says, wherever it stands.
     pub fn checksum(&self) -> String {
         let said = (&self.name, &self.receptor, &self.ligand, &self.options);
-        let mut sum = sha256(format!("{said:?}").as_bytes());
+        let mut sum = sha256(serde_json::json!(said).to_string().as_bytes());
         sum.truncate(16);
         sum
     }

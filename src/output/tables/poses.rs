@@ -6,13 +6,11 @@
 //! same f64; a missing value is an empty field.
 
 use std::io;
-use std::path::Path;
 
 use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
-use crate::output::files::whole_file::{FileError, write_whole};
 use crate::output::tables::fields::Column;
 use crate::table_text::cells::TableWriter;
 
@@ -77,14 +75,6 @@ impl PoseTable {
                 }
             }
         }
-    }
-
-    /// Writes the table, whole or not at all.
-    ///
-    /// # Errors
-    /// [`FileError`] when the file cannot be made or written.
-    pub fn write(&self, path: &Path) -> Result<(), FileError> {
-        write_whole(path, |file| self.write_to(file))
     }
 
     /// Writes the table to a stream.
