@@ -23,6 +23,7 @@ pub mod ball_file;
 pub mod ball_solid;
 pub mod ball_union;
 mod conformers;
+mod error;
 pub mod knots;
 #[cfg(feature = "mesh")]
 pub mod mesh;
@@ -41,5 +42,6 @@ mod test_support;
 
 pub use ball::{Ball, LARGEST_LENGTH, SMALLEST_RADIUS};
 pub use conformers::Conformers;
+pub use error::Error;
 pub use knots::Knots;
 pub use polar_atom::PolarAtom;
