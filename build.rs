@@ -1,5 +1,4 @@
-//! Tells the program which git commit it was built from; "unknown" outside a checkout of its own or without git. With
-//! the feature `viewer` it makes sure that what is embedded is there.
+//! Sets the git commit of the build; "unknown" outside a checkout of its own or without git.
 
 use std::path::Path;
 use std::process::Command;
@@ -27,19 +26,8 @@ fn commit() -> Option<String> {
     git(&["rev-parse", "--short=12", "HEAD"])
 }
 
-/// What the feature `viewer` embeds: npm's package 3dmol.
-const VIEWER: &str = "viewer/node_modules/3dmol/build/3Dmol-min.js";
-
 fn main() {
     let commit = commit();
-    if std::env::var_os("CARGO_FEATURE_VIEWER").is_some() {
-        println!("cargo::rerun-if-changed={VIEWER}");
-        if !Path::new(VIEWER).is_file() {
-            println!(
-                "cargo::error=the feature `viewer` embeds {VIEWER}: run `npm ci --prefix viewer` first"
-            );
-        }
-    }
     println!("cargo::rerun-if-changed=build.rs");
     if commit.is_some() {
         // The reflog of HEAD changes with every commit and checkout, in a linked worktree too.

@@ -50,5 +50,5 @@ benchmark dir *options:
 # A graphics processor: checked against the CPU, then timed beside it
 gpu:
     KNOTDOCK_NEEDS_GPU=1 cargo test -p knotdock-scoring --features gpu --test all gpu
-    KNOTDOCK_NEEDS_GPU=1 cargo test --test all graphics
+    KNOTDOCK_NEEDS_GPU=1 cargo test -p knotdock-cli --test all graphics
     cargo bench --bench graphics

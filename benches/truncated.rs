@@ -3,7 +3,7 @@
 //! Timed are a new translation at a prepared rotation, preparing a rotation, and a new rotation with the gradient
 //! over all six degrees of freedom.
 //!
-//! `cargo bench --bench configuration` prints medians in microseconds, and nanoseconds a mode, which stay level where
+//! `cargo bench --bench truncated` prints medians in microseconds, and nanoseconds a mode, which stay level where
 //! time is linear in modes. B&I (Fig. 9) report under a millisecond for fewer than 4,096 modes.
 
 mod example;

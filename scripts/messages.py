@@ -57,7 +57,7 @@ def main() -> None:
     parser.add_argument("--long", type=int, default=0)
     wanted = parser.parse_args()
     count = 0
-    for folder in ("src", "structures/src", "scoring/src", "python/src"):
+    for folder in ("src", "cli/src", "structures/src", "scoring/src", "python/src"):
         for path in sorted((ROOT / folder).rglob("*.rs")):
             found = [(line, text) for line, text in messages(path) if len(text.split()) > wanted.long]
             if found:

@@ -30,7 +30,6 @@
 //! molecules and in the files' unit for meshes. A pose takes a ligand atom at x to R x + t. A higher score is better.
 
 pub mod bounded_read;
-pub mod cli;
 pub mod dock;
 pub mod ensemble;
 pub mod error;
@@ -42,7 +41,6 @@ pub mod mesh;
 pub mod options;
 pub mod output;
 pub mod plain_path;
-pub mod plot;
 pub mod pose_geometry;
 pub mod pose_space;
 pub mod predictions;
@@ -50,16 +48,11 @@ pub mod priors;
 pub mod progress;
 pub mod rank;
 pub mod refine;
-pub mod report;
 pub mod restraints;
 pub mod score;
 pub mod search;
-mod shell_word;
 pub mod side_chains;
-pub mod signals;
-pub mod system_limits;
 pub mod table_text;
 #[cfg(test)]
 mod test_molecules;
 pub mod threads;
-pub mod tradeoff;

@@ -124,7 +124,8 @@ fn mesh(part: &Part) -> Mesh {
 }
 
 fn bunny() -> Mesh {
-    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples/bunny.obj");
+    let file =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples/bunny.obj");
     read(&file).unwrap().0
 }
 

@@ -9,7 +9,7 @@ use serde_json::{Value, json};
 /// Records of an example, all of the chain given, moved along x.
 fn atoms(name: &str, chain: char, shift: f64) -> String {
     let file = format!("structures/examples/1ppe_{name}.pdb");
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(file);
     let text = fs::read_to_string(path).unwrap();
     let records = text.lines().filter(|line| line.starts_with("ATOM"));
     let moved = |line: &str| {

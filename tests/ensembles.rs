@@ -13,7 +13,7 @@ use crate::program::refused;
 
 fn example(name: &str) -> String {
     let file = format!("structures/examples/1ppe_{name}.pdb");
-    fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap()
+    fs::read_to_string(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(file)).unwrap()
 }
 
 /// The atom records of an example with every atom moved.

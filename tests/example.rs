@@ -12,7 +12,8 @@ use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 use serde_json::Value;
 
 fn example(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("structures/examples/1ppe_{name}.pdb"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .join(format!("structures/examples/1ppe_{name}.pdb"))
 }
 
 #[test]

@@ -13,7 +13,7 @@ use std::fs;
 use std::path::Path;
 
 fn example(name: &str) -> String {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples");
     folder.join(name).display().to_string()
 }
 

@@ -11,7 +11,7 @@ use serde_json::Value;
 /// Trypsin or its inhibitor, unbound or bound: the atom records of an example, all of the chain given.
 fn atoms(name: &str, chain: char) -> String {
     let file = format!("structures/examples/1ppe_{name}.pdb");
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join(file);
+    let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(file);
     let text = fs::read_to_string(path).unwrap();
     let records = text.lines().filter(|line| line.starts_with("ATOM"));
     records

@@ -14,7 +14,7 @@ type Row = BTreeMap<String, String>;
 fn example(name: &str) -> String {
     format!(
         "{}/structures/examples/1ppe_{name}_unbound.pdb",
-        env!("CARGO_MANIFEST_DIR")
+        concat!(env!("CARGO_MANIFEST_DIR"), "/..")
     )
 }
 

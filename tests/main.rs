@@ -1,7 +1,7 @@
 //! The tests of the program and its library, one module a subject.
 //!
 //! One program holds them all: each further one would link all crates again and wait for the slowest test of the last.
-//! `cargo test --test all SUBJECT` runs a subject.
+//! `cargo test -p knotdock-cli --test all SUBJECT` runs a subject.
 
 #[path = "../structures/examples/docking_parts/mod.rs"]
 #[allow(dead_code)] // The example writes files, which the tests do by themselves.

@@ -475,7 +475,7 @@ fn a_report_that_cannot_be_written_is_a_failure() {
 fn a_pipe_is_recorded_as_what_came_through_it() {
     let folder = tempfile::tempdir().unwrap();
     let file = concat!(
-        env!("CARGO_MANIFEST_DIR"),
+        concat!(env!("CARGO_MANIFEST_DIR"), "/.."),
         "/structures/examples/1ppe_ligand_unbound.pdb"
     );
     let inspect = |input: &str, atoms: &str| -> Value {

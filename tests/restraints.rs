@@ -17,7 +17,7 @@ const PAIR: &str = "receptor,ligand,upper\nA:195.CA,B:5.CA,10\n";
 fn example(name: &str) -> String {
     format!(
         "{}/structures/examples/1ppe_{name}.pdb",
-        env!("CARGO_MANIFEST_DIR")
+        concat!(env!("CARGO_MANIFEST_DIR"), "/..")
     )
 }
 

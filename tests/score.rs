@@ -8,7 +8,8 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 
 fn example(name: &str) -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join(format!("structures/examples/1ppe_{name}.pdb"))
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .join(format!("structures/examples/1ppe_{name}.pdb"))
 }
 
 fn score(receptor: &Path, ligand: &Path, arguments: &[&str]) -> Value {

@@ -6,8 +6,8 @@
 //! `scripts/reference/pair_sum.py`, an independent witness, sums shape, slices, electrostatics and contact of every
 //! pose in Python.
 //!
-//! What moved, by how much, and in which term: `cargo test --test all scoring_table -- --nocapture`. After a change
-//! that is meant: `KNOTDOCK_BLESS=1 cargo test --test all scoring_table`, and say in the change what moved and why.
+//! What moved, by how much, and in which term: `cargo test -p knotdock-cli --test all scoring_table -- --nocapture`. After a change
+//! that is meant: `KNOTDOCK_BLESS=1 cargo test -p knotdock-cli --test all scoring_table`, and say in the change what moved and why.
 //! The cases are made by `scripts/reference/scoring_cases.py`.
 
 use std::collections::{BTreeMap, BTreeSet};
@@ -40,7 +40,7 @@ const BLOCKED: &str = "blocked_helices";
 const SLICES: [&str; 4] = ["slice_0", "slice_r0", "slice_2r0", "unfiltered"];
 
 fn folder() -> PathBuf {
-    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scoring_table")
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("tests/scoring_table")
 }
 
 /// The options that a case is scored and searched with: the defaults but for what is blocked.
@@ -222,7 +222,7 @@ fn check(name: &str, columns: &[&str], found: &Table, tolerance: &[f64]) {
     assert!(
         lines.is_empty(),
         "{} moves in tests/scoring_table/{name}, the first of them:\n{}\n\
-         If they are meant: KNOTDOCK_BLESS=1 cargo test --test all scoring_table",
+         If they are meant: KNOTDOCK_BLESS=1 cargo test -p knotdock-cli --test all scoring_table",
         lines.len(),
         lines
             .iter()

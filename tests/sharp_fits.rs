@@ -17,7 +17,8 @@ fn place(state: &str) -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let example = |name: &str| {
         let file = format!("structures/examples/1ppe_{name}.pdb");
-        fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join(file)).unwrap()
+        fs::read_to_string(Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join(file))
+            .unwrap()
     };
     let write = |name: &str, text: &str| fs::write(folder.path().join(name), text).unwrap();
     write("receptor.pdb", &example(&format!("receptor_{state}")));

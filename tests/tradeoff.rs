@@ -9,7 +9,8 @@ use assert_cmd::cargo::cargo_bin_cmd;
 use serde_json::Value;
 
 fn case(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scoring_table/cases");
+    let path =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("tests/scoring_table/cases");
     path.join(name).display().to_string()
 }
 

@@ -5,7 +5,7 @@ use crate::report::Figure;
 use crate::table::{Cell, Table};
 use crate::{Setting, densities};
 use knotdock::geometry::collide::{Deadline, Verdict, Workspace};
-use knotdock::plot::chart::{Axis, Panel, Series, Style};
+use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
 use std::error::Error;
 use std::time::Instant;
 

@@ -77,7 +77,8 @@ pub struct Setting {
 
 impl Setting {
     fn new(poses: usize) -> Result<Self, Box<dyn Error>> {
-        let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples/bunny.obj");
+        let file = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+            .join("structures/examples/bunny.obj");
         let (mesh, _) = read(&file)?;
         let solid = Solid::new(&mesh)?;
         let (low, high) = mesh.bounds();

@@ -81,7 +81,8 @@ pub fn coal(
     stride: usize,
     runs: usize,
 ) -> Result<Vec<CoalRow>, String> {
-    let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("scripts/benchmark/collide_peers.py");
+    let script = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+        .join("scripts/benchmark/collide_peers.py");
     let table = path.with_file_name("coal.csv");
     let done = Command::new(python)
         .arg(&script)

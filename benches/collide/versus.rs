@@ -8,7 +8,7 @@ use crate::{Options, Setting, densities, path};
 use knotdock::geometry::collide::{
     Bounds, CollisionScene, Deadline, Quantities, Questions, Verdict, Ways, Workspace,
 };
-use knotdock::plot::chart::{Axis, Colour, Panel, Series, Style};
+use knotdock_cli::plot::chart::{Axis, Colour, Panel, Series, Style};
 use std::error::Error;
 use std::fs;
 use std::time::Instant;

@@ -7,7 +7,7 @@ use std::path::Path;
 
 /// Knots of the receptor and the ligand.
 pub fn knots() -> Result<[Knots; 2], Box<dyn Error>> {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples");
     Ok([
         load(folder.join("1ppe_receptor_unbound.pdb"))?,
         load(folder.join("1ppe_ligand_unbound.pdb"))?,

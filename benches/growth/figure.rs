@@ -4,7 +4,7 @@ use crate::measured::Measured;
 use crate::report::Figure;
 use crate::settings::{Setting, Varied};
 use crate::table::{Cell, Table};
-use knotdock::plot::chart::{Axis, Colour, Panel, Series, Style};
+use knotdock_cli::plot::chart::{Axis, Colour, Panel, Series, Style};
 
 const BLUE: Colour = [0x00, 0x72, 0xb2];
 const GREEN: Colour = [0x00, 0x9e, 0x73];

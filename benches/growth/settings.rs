@@ -52,7 +52,8 @@ pub struct Pair {
 impl Pair {
     /// Reads the example pair.
     pub fn example() -> Result<Self, Box<dyn Error>> {
-        let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
+        let folder =
+            Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples");
         let load = |name: &str| -> Result<Molecule, Box<dyn Error>> {
             let spec = InputSpec::whole(folder.join(name));
             Ok(read(&spec, &ReadOptions::default())?)

@@ -2,7 +2,7 @@
 
 use crate::minkowski::{Knot, write};
 use crate::scene::Scene;
-use knotdock::plot::svg::Svg;
+use knotdock_cli::plot::svg::Svg;
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Edge of a panel, in SVG units; also the number of cells along it in which a ball has to be seen.

@@ -7,7 +7,7 @@ use crate::report::Figure;
 use crate::scene::Scene;
 use crate::table::{Cell, Table};
 use crate::timing::least;
-use knotdock::plot::chart::{Axis, Colour, Panel, Series, Style};
+use knotdock_cli::plot::chart::{Axis, Colour, Panel, Series, Style};
 
 /// Sums that are written at most, 400 MB of nodes; of more a share is timed and scaled up.
 const MOST_WRITTEN: usize = 1 << 24;

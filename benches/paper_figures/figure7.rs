@@ -7,8 +7,8 @@ use crate::scene::Scene;
 use crate::table::{Cell, Table};
 use crate::timing::{least, timed};
 use crate::whole::{Errors, Whole};
-use knotdock::plot::chart::Colour;
-use knotdock::plot::chart::{Axis, Panel, Series, Style};
+use knotdock_cli::plot::chart::Colour;
+use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
 use knotdock_scoring::transform::truncation::{Selection, total};
 
 /// Everything measured at one m'.

@@ -9,8 +9,8 @@ use crate::table::{Cell, Table};
 use crate::timing::timed;
 use crate::ways_measured::{Measured, OfGrid, measure};
 use knotdock::geometry::gap::spectrum::Kernel;
-use knotdock::plot::chart::Colour;
-use knotdock::plot::chart::{Axis, Panel, Series, Style};
+use knotdock_cli::plot::chart::Colour;
+use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
 use std::error::Error;
 
 /// The ways in the order in which they are measured.

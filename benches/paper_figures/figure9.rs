@@ -10,7 +10,7 @@ use crate::whole::Whole;
 use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::spectrum::{FrequencyBox, Kernel};
 use knotdock::geometry::gap::ways::{Points, fast_3d, plan_3d};
-use knotdock::plot::chart::{Axis, Panel, Series, Style};
+use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
 use knotdock_scoring::transform::truncation::Selection;
 use knotdock_scoring::truncated::RotationSpectrum;
 use nalgebra::Vector3;

@@ -1,7 +1,7 @@
 //! What a figure leaves behind: tables as Markdown and CSV, a picture as SVG.
 
 use crate::table::{Cell, Table};
-use knotdock::plot::chart::{Colour, Panel, draw};
+use knotdock_cli::plot::chart::{Colour, Panel, draw};
 use std::fs;
 use std::io;
 use std::path::Path;

@@ -39,7 +39,8 @@ pub struct Scene {
 impl Scene {
     /// Samples both with the spacing of `per_axis` nodes along the bunny's longest edge.
     pub fn new(per_axis: usize) -> Result<Self, Box<dyn Error>> {
-        let bunny = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples/bunny.obj");
+        let bunny = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
+            .join("structures/examples/bunny.obj");
         let (mesh, _) = read(&bunny)?;
         let (bunny, nodes) = sampled(&mesh, 1.0, per_axis)?;
         let nodes_along = |edge: f64| 1 + (edge * (per_axis - 1) as f64).round() as usize;

@@ -1,7 +1,7 @@
 //! The upper part of Figure 7: a section through the gap function, what m' modes make of it, and what they miss.
 
 use crate::whole::Whole;
-use knotdock::plot::svg::Svg;
+use knotdock_cli::plot::svg::Svg;
 
 /// Panels show the whole function and these powers of two of modes.
 const POWERS: [u32; 5] = [6, 8, 10, 12, 14];

@@ -11,10 +11,10 @@ use std::sync::mpsc::{RecvTimeoutError, channel};
 use std::thread::Builder;
 use std::time::Duration;
 
-use knotdock::cli::{Failure, Listener};
 use knotdock::output::files::added::add_files;
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 use knotdock::progress::Ended;
+use knotdock_cli::{Failure, Listener};
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
@@ -123,7 +123,7 @@ pub fn call(
     let (sender, mut receiver) = channel();
     let heard = Arc::clone(&events);
     let work = move || {
-        let done = knotdock::cli::call(words, heard.as_ref());
+        let done = knotdock_cli::call(words, heard.as_ref());
         // Nobody waits for a command that was left to itself.
         let _ = sender.send(done);
     };
@@ -181,8 +181,8 @@ fn tell(listener: &Bound<'_, PyAny>, events: &Events, result: &mut Option<String
 #[pyfunction]
 pub fn main(py: Python<'_>, arguments: &Bound<'_, PyList>) -> PyResult<u8> {
     let arguments: Vec<OsString> = arguments.extract()?;
-    knotdock::system_limits::fail_at_file_size();
-    Ok(py.detach(|| knotdock::cli::main(arguments)))
+    knotdock_cli::system_limits::fail_at_file_size();
+    Ok(py.detach(|| knotdock_cli::main(arguments)))
 }
 
 /// Version and commit.

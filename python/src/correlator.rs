@@ -4,7 +4,7 @@
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
-use knotdock::cli::memory_limit;
+use knotdock_cli::memory_limit;
 use knotdock_scoring::engine::{EngineMemory, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::KernelOptions;

@@ -1,6 +1,6 @@
 //! Failures as exceptions with file, line, message and remedy: classes of `knotdock.errors`.
 
-use knotdock::cli::Failure;
+use knotdock_cli::Failure;
 use pyo3::prelude::*;
 
 /// The exception of a failure: `InputError` for bad input, `KnotdockError` for anything else.

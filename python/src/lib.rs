@@ -12,8 +12,8 @@ mod options;
 use pyo3::prelude::*;
 
 #[global_allocator]
-static ALLOCATOR: knotdock::system_limits::ReportingAllocator =
-    knotdock::system_limits::ReportingAllocator;
+static ALLOCATOR: knotdock_cli::system_limits::ReportingAllocator =
+    knotdock_cli::system_limits::ReportingAllocator;
 
 /// The compiled part of the package.
 #[pymodule]

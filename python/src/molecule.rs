@@ -18,7 +18,7 @@ impl Molecule {
     /// Reads `FILE` or `FILE:H,L`, with words such as `--waters=keep`.
     #[staticmethod]
     fn from_words(py: Python<'_>, file: OsString, words: Vec<OsString>) -> PyResult<Self> {
-        let read = py.detach(|| knotdock::cli::read_molecule(&file, words));
+        let read = py.detach(|| knotdock_cli::read_molecule(&file, words));
         read.map(Self).map_err(|failure| exception(py, &failure))
     }
 

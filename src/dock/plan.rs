@@ -81,9 +81,9 @@ pub struct DockPlan {
     /// Unresolved segments and residues near termini, of receptor and ligand.
     #[serde(flatten)]
     pub regions: FlexibleRegions,
-    /// What is searched, and how.
+    /// Settings of the search.
     #[serde(skip)]
-    pub(crate) search: SearchPlan,
+    pub search: SearchPlan,
     /// The parts of atoms in hydrogen bonds, where sharp fits are looked for.
     #[serde(skip)]
     pub(crate) polar: Option<[Vec<PolarAtom>; 2]>,
@@ -215,14 +215,14 @@ impl DockPlan {
     }
 
     /// Inputs and weights of the pose terms.
-    pub(crate) fn rescoring(&self) -> Rescoring<'_> {
+    pub fn rescoring(&self) -> Rescoring<'_> {
         let bodies = [&self.receptor, &self.ligand];
         let known = (&self.active, &self.restraints);
         Rescoring::new(bodies, known, &self.regions, &self.options)
     }
 
     /// Rotations that would be in flight if there were more than enough of them.
-    pub(crate) fn most_in_flight(&self) -> usize {
+    pub fn most_in_flight(&self) -> usize {
         self.memory.most_in_flight
     }
 

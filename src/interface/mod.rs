@@ -53,7 +53,8 @@ pub struct ResidueName {
 }
 
 impl ResidueName {
-    pub(crate) fn of(atom: &Atom) -> Self {
+    /// The name of an atom's residue.
+    pub fn of(atom: &Atom) -> Self {
         let insertion = atom.insertion_code.map(String::from).unwrap_or_default();
         Self {
             chain: atom.chain.clone(),

@@ -26,5 +26,4 @@
 
 pub mod files;
 pub mod records;
-pub mod shards;
 pub mod tables;

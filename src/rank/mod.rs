@@ -2,7 +2,7 @@
 
 pub(crate) mod candidates;
 pub mod cluster;
-pub(crate) mod ranking;
+pub mod ranking;
 pub mod rescoring;
 pub mod sharp;
 pub mod term_counts;

@@ -20,7 +20,7 @@ pub struct ActingTerm {
 }
 
 /// Inputs and weights of the pose terms between two bodies.
-pub(crate) struct Rescoring<'a> {
+pub struct Rescoring<'a> {
     inputs: TermInputs<'a>,
     weights: [f64; POSE_TERMS.len()],
 }

@@ -2,7 +2,7 @@
 
 /// The 1-based line on which a record begins, whose position is where the reader stood before it passed over empty
 /// lines and, where a byte begins comments, over theirs.
-pub(crate) fn line_of(text: &[u8], position: &csv::Position, comment: Option<u8>) -> u64 {
+pub fn line_of(text: &[u8], position: &csv::Position, comment: Option<u8>) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(from..).unwrap_or_default();
     position.line() + passed_over(rest.split(|&byte| byte == b'\n'), comment)

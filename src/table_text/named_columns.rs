@@ -150,7 +150,7 @@ pub(crate) fn shortened(text: &str) -> String {
 }
 
 /// Words with commas between, the first thirty.
-pub(crate) fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
+pub fn listed<'a>(words: impl IntoIterator<Item = &'a str>) -> String {
     const MOST: usize = 30;
     let mut words = words.into_iter();
     let mut shown: Vec<&str> = words.by_ref().take(MOST).collect();

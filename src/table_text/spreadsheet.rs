@@ -1,7 +1,7 @@
 //! Tables that people fill in, as spreadsheets save them: which byte separates columns, and what a column is called.
 
 /// The text without a byte order mark, and the byte that separates its columns.
-pub(crate) fn plain(bytes: Vec<u8>) -> Result<(String, u8), String> {
+pub fn plain(bytes: Vec<u8>) -> Result<(String, u8), String> {
     let text = String::from_utf8(bytes)
         .map_err(|_| "it is not text in UTF-8, as which spreadsheets can save it".to_owned())?;
     let mut text = match text.strip_prefix('\u{feff}') {
@@ -29,6 +29,6 @@ pub(crate) fn plain(bytes: Vec<u8>) -> Result<(String, u8), String> {
 }
 
 /// A column's name as options of the command line are spelled, but for `_` in place of `-`.
-pub(crate) fn column_name(name: &str) -> String {
+pub fn column_name(name: &str) -> String {
     name.to_lowercase().replace(['-', ' '], "_")
 }

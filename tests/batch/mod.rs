@@ -19,7 +19,8 @@ fn place() -> tempfile::TempDir {
     let folder = tempfile::tempdir().unwrap();
     let inputs = folder.path().join("in");
     fs::create_dir(&inputs).unwrap();
-    let cases = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/scoring_table/cases");
+    let cases =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("tests/scoring_table/cases");
     for case in ["helices", "charged_helices"] {
         for side in ["receptor", "ligand"] {
             let name = format!("{case}_{side}.pdb");
@@ -346,7 +347,8 @@ fn a_table_that_is_none_is_refused_before_anything_runs() {
 #[test]
 fn the_example_s_table_is_docked() {
     let folder = tempfile::tempdir().unwrap();
-    let table = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples/pairs.csv");
+    let table =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples/pairs.csv");
     let words = format!(
         "batch {} -o out -- --rotations 24 --poses 40",
         table.display()

@@ -23,7 +23,7 @@ use serde_json::Value;
 fn example(name: &str) -> String {
     format!(
         "{}/structures/examples/1ppe_{name}.pdb",
-        env!("CARGO_MANIFEST_DIR")
+        concat!(env!("CARGO_MANIFEST_DIR"), "/..")
     )
 }
 

@@ -4,9 +4,9 @@
 use std::fs;
 use std::path::Path;
 
-use knotdock::output::records::recorded_run::RecordedRun;
-use knotdock::output::tables::pair_table::read_pairs;
 use knotdock::output::tables::poses::PoseTable;
+use knotdock_cli::records::recorded_run::RecordedRun;
+use knotdock_cli::tables::pair_table::read_pairs;
 use knotdock_scoring::terms::effect::contact::{Potential, PotentialError, TYPES};
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_structures::ball_union::union_volume;

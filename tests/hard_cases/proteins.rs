@@ -22,7 +22,7 @@ const MODES: usize = 2_000;
 const POSES: usize = 200;
 
 fn example(name: &str) -> Knots {
-    let folder = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples");
     let spec = InputSpec::whole(folder.join(name));
     read(&spec, &ReadOptions::default())
         .unwrap()

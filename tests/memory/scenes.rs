@@ -71,7 +71,8 @@ pub const SCENES: &[Scene] = &[
 
 /// Writes the files that the scenes name.
 pub fn write_inputs(folder: &Path) {
-    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
+    let examples =
+        Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples");
     for (name, example) in [
         ("receptor.pdb", "1ppe_receptor_unbound.pdb"),
         ("ligand.pdb", "1ppe_ligand_unbound.pdb"),

@@ -16,7 +16,7 @@ type Row = BTreeMap<String, String>;
 fn example(name: &str) -> String {
     format!(
         "{}/structures/examples/1ppe_{name}.pdb",
-        env!("CARGO_MANIFEST_DIR")
+        concat!(env!("CARGO_MANIFEST_DIR"), "/..")
     )
 }
 

@@ -247,7 +247,10 @@ fn a_batch_holds_rings_too() {
 fn what_no_ring_can_have_is_refused() {
     let folder = tempfile::tempdir().unwrap();
     fs::copy(example("ligand_unbound"), folder.path().join("a.pdb")).unwrap();
-    let bunny = concat!(env!("CARGO_MANIFEST_DIR"), "/structures/examples/bunny.obj");
+    let bunny = concat!(
+        concat!(env!("CARGO_MANIFEST_DIR"), "/.."),
+        "/structures/examples/bunny.obj"
+    );
     fs::copy(bunny, folder.path().join("a.obj")).unwrap();
     for (options, said) in [
         ("a.pdb a.pdb --symmetry C2", "LIGAND is given too"),
@@ -279,7 +282,7 @@ fn what_no_ring_can_have_is_refused() {
 fn the_example_s_dimer_is_put_together_again() {
     let folder = tempfile::tempdir().unwrap();
     let file = |name: &str| {
-        let root = env!("CARGO_MANIFEST_DIR");
+        let root = concat!(env!("CARGO_MANIFEST_DIR"), "/..");
         format!("{root}/structures/examples/4e43_{name}.pdb")
     };
     let (one, dimer) = (file("molecule"), file("dimer"));

@@ -118,7 +118,7 @@ fn what_is_no_ring_has_no_second_one() {
     let folder = tempfile::tempdir().unwrap();
     fs::copy(example("ligand_unbound"), folder.path().join("a.pdb")).unwrap();
     let dimer = concat!(
-        env!("CARGO_MANIFEST_DIR"),
+        concat!(env!("CARGO_MANIFEST_DIR"), "/.."),
         "/structures/examples/4e43_dimer.pdb"
     );
     fs::copy(dimer, folder.path().join("dimer.pdb")).unwrap();

@@ -3,7 +3,6 @@
 pub mod added;
 pub mod appended;
 pub mod assemblies;
-pub mod balls;
 pub mod checksum;
 pub mod complexes;
 mod disk;
@@ -13,10 +12,7 @@ pub mod lock;
 pub mod model_file;
 pub mod molecule_file;
 pub mod own_files;
-pub mod sample_picture;
 pub mod seal;
 pub mod staging;
-pub mod surfaces;
 pub mod viewers;
-pub mod volume_grids;
 pub mod whole_file;

@@ -16,7 +16,7 @@ pub const BEGINNING: &str = "<!DOCTYPE html>\n<!-- A report of knotdock";
 const SEAL: &str = "<!-- sha256 of all above: ";
 
 /// A text with its seal.
-pub(crate) fn sealed(text: String) -> String {
+pub fn sealed(text: String) -> String {
     let checksum = sha256(text.as_bytes());
     text + SEAL + &checksum + " -->\n"
 }

@@ -23,7 +23,6 @@ use crate::priors::active_residues::AssumedSite;
 use crate::rank::rescoring::ActingTerm;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
-use crate::tradeoff::choice::Chosen;
 use knotdock_scoring::terms::effect::Effect;
 
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
@@ -102,6 +101,19 @@ pub struct Timing {
     pub effects: Vec<EffectTime>,
     /// The most memory that the process held, in bytes; `null` where the system does not say.
     pub peak_memory_bytes: Option<u64>,
+}
+
+/// The chosen setting, with its expected cost and quality.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Chosen {
+    /// Error that was requested.
+    pub accuracy: Option<f64>,
+    /// Seconds that were requested.
+    pub budget_seconds: Option<f64>,
+    /// Seconds on the clock that the run is expected to take.
+    pub predicted_seconds: f64,
+    /// Error that is expected, where the setting was chosen by it.
+    pub predicted_error: Option<f64>,
 }
 
 /// Machine, threads and memory of the run. Differs from machine to machine.

@@ -16,12 +16,6 @@ pub const VERSION_WITH_COMMIT: &str = concat!(
     ")"
 );
 
-/// Features that the program may be built with, and whether it was.
-pub const FEATURES: [(&str, bool); 2] = [
-    ("gpu", cfg!(feature = "gpu")),
-    ("viewer", cfg!(feature = "viewer")),
-];
-
 /// The program, as records of runs and sweeps name it.
 #[derive(Clone, Debug, Serialize)]
 pub struct Program {

@@ -17,9 +17,12 @@ use crate::table_text::cells::TableWriter;
 /// A table of poses as text, with the pose of each row: what `evaluate` and `export` read.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTable {
-    pub(crate) header: StringRecord,
-    pub(crate) records: Vec<StringRecord>,
-    pub(crate) rows: Vec<PoseRow>,
+    /// The columns.
+    pub header: StringRecord,
+    /// Fields of each row.
+    pub records: Vec<StringRecord>,
+    /// Rank and pose of each row.
+    pub rows: Vec<PoseRow>,
 }
 
 /// Rank and pose of a row.

@@ -176,19 +176,23 @@ impl PoseColumns {
 }
 
 /// Where the columns that place the ligand stand in a header.
-pub(super) struct PlacementColumns {
+pub struct PlacementColumns {
     quaternion: [(&'static str, usize); 4],
     translation: [(&'static str, usize); 3],
 }
 
 impl PlacementColumns {
     /// The columns in the order in which they stand without a header.
-    pub(super) const UNNAMED: Self = Self {
+    pub const UNNAMED: Self = Self {
         quaternion: [("qw", 0), ("qx", 1), ("qy", 2), ("qz", 3)],
         translation: [("tx", 4), ("ty", 5), ("tz", 6)],
     };
 
-    pub(super) fn find(path: &Path, header: &StringRecord) -> Result<Self, PoseTableError> {
+    /// Finds the columns by their names.
+    ///
+    /// # Errors
+    /// [`PoseTableError`] for a column that is missing.
+    pub fn find(path: &Path, header: &StringRecord) -> Result<Self, PoseTableError> {
         let mut found = Self::UNNAMED;
         for (column, place) in found.quaternion.iter_mut().chain(&mut found.translation) {
             *place = place_of(path, header, column)?;
@@ -197,7 +201,7 @@ impl PlacementColumns {
     }
 
     /// The pose of a row, which `of` names.
-    pub(super) fn pose(
+    pub fn pose(
         &self,
         path: &Path,
         line: u64,

@@ -1,0 +1,92 @@
+//! Checks of an output file: never over one that is read, and over another only on request.
+
+use std::path::{Path, PathBuf};
+
+use knotdock::output::files::whole_file::{FileError, is_link, is_stream, leftovers};
+
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+use crate::messages::leftovers::warn_leftovers;
+
+/// Checks, before any work, that `file` can be made, is no link and none of those that are `read`, and is not there
+/// unless `force` is true; warns of what ended commands left beside it.
+pub fn check_output<'a>(
+    file: &Path,
+    read: impl IntoIterator<Item = &'a Path>,
+    force: bool,
+    console: Console,
+) -> Result<(), Failure> {
+    check_not_read(file, read)?;
+    if is_link(file) {
+        return Err(FileError::link(file).into());
+    }
+    // A device or a pipe is there and is meant to be written to.
+    if !force && file.is_file() && !is_stream(file) {
+        return Err(Failure::input("the file is already there")
+            .at(file)
+            .remedy("choose another name, or pass --force to replace it"));
+    }
+    let folder = file
+        .parent()
+        .filter(|folder| !folder.as_os_str().is_empty());
+    if file.is_dir() || !folder.unwrap_or(Path::new(".")).is_dir() {
+        return Err(Failure::input(
+            "cannot write this file: its folder does not exist, or the name is that of a folder",
+        )
+        .at(file)
+        .remedy("name a file in a folder that exists"));
+    }
+    if !is_stream(file) {
+        warn_leftovers(&leftovers(file), console);
+    }
+    Ok(())
+}
+
+/// Checks that `file` is none of those that are `read`.
+pub fn check_not_read<'a>(
+    file: &Path,
+    read: impl IntoIterator<Item = &'a Path>,
+) -> Result<(), Failure> {
+    if read.into_iter().any(|other| is_same(file, other)) {
+        return Err(Failure::input("the output file is one of the input files")
+            .at(file)
+            .remedy("give the output file another name"));
+    }
+    Ok(())
+}
+
+/// Whether two names, of which either may be of nothing yet, are of one file, by links and detours too.
+pub fn is_same(one: &Path, other: &Path) -> bool {
+    plain(one) == plain(other)
+}
+
+/// A file's path without links and detours; of one that is not there yet its folder's, with its name.
+fn plain(file: &Path) -> PathBuf {
+    let in_folder = || {
+        let folder = file
+            .parent()
+            .filter(|folder| !folder.as_os_str().is_empty());
+        let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok()?;
+        Some(folder.join(file.file_name()?))
+    };
+    let there = file.canonicalize().ok();
+    there.or_else(in_folder).unwrap_or_else(|| file.to_owned())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Found by a review: `--atoms a.pdb --write ./a.pdb` wrote one over the other.
+    #[test]
+    fn a_file_that_is_not_there_yet_is_known_under_every_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name);
+        std::fs::create_dir(at("inner")).unwrap();
+        assert!(is_same(&at("a.pdb"), &at("./inner/../a.pdb")));
+        assert!(is_same(Path::new("a.pdb"), Path::new("./a.pdb")));
+        assert!(!is_same(&at("a.pdb"), &at("inner/a.pdb")));
+        assert!(!is_same(&at("a.pdb"), &at("b.pdb")));
+        assert!(is_same(&at("nowhere/a.pdb"), &at("nowhere/a.pdb")));
+    }
+}

@@ -1,0 +1,49 @@
+//! Options that every command has.
+
+use clap::{Args, Command};
+
+use crate::messages::console::Console;
+
+/// Options of the whole program.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct ProgramArguments {
+    /// Print one JSON object on standard output, and all messages on standard error.
+    #[arg(long, global = true)]
+    json: bool,
+    /// Print errors only.
+    #[arg(short, long, global = true, conflicts_with = "verbose")]
+    quiet: bool,
+    /// Print more detail.
+    #[arg(short, long, global = true)]
+    verbose: bool,
+}
+
+impl From<ProgramArguments> for Console<'_> {
+    fn from(arguments: ProgramArguments) -> Self {
+        Self {
+            json: arguments.json,
+            quiet: arguments.quiet,
+            verbose: arguments.verbose,
+            listener: None,
+        }
+    }
+}
+
+/// Whether a word is an option of the whole program.
+pub fn is_of_program(word: &str) -> bool {
+    let program = ProgramArguments::augment_args(Command::new("knotdock"));
+    program.get_arguments().any(|option| {
+        let long = option.get_long().map(|long| format!("--{long}"));
+        let short = option.get_short().map(|short| format!("-{short}"));
+        long.as_deref() == Some(word) || short.as_deref() == Some(word)
+    })
+}
+
+/// A command in which a negative number is the value of the option before it, so that the error can say what is wrong
+/// with it.
+pub fn with_negative_numbers(command: Command) -> Command {
+    command.mut_args(|argument| {
+        let takes_value = argument.get_action().takes_values();
+        argument.allow_negative_numbers(takes_value)
+    })
+}

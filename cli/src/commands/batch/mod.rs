@@ -1,0 +1,157 @@
+//! `knotdock batch`: many pairs in one call, and one table of what came of them.
+
+mod batch_pairs;
+mod crew;
+mod docking;
+mod limits;
+mod pair;
+mod plan;
+mod schedule;
+
+use std::path::PathBuf;
+
+use crate::shards::Shard;
+use crate::shards::record::{BatchRecord, Keep};
+use crate::tables::report::counted;
+use clap::Args;
+use knotdock::options::values::{AllOr, all_or_at_least_one, at_least_one};
+
+use crate::arguments::program::is_of_program;
+use crate::commands::batch::batch_pairs::{Pairs, pairs};
+use crate::commands::batch::docking::BatchRun;
+use crate::commands::batch::limits::Limits;
+use crate::inputs::recent_molecules::keep_recent;
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+
+/// Dock many pairs of a table, and sum up what came of them.
+///
+/// By default each pair has a directory of its run, and DIR/results.csv a row a pair. A pair that is done is not docked
+/// again, so that a batch which was stopped goes on where it was. A pair that fails is reported, and the others go on.
+/// For many thousands of pairs, --keep table writes one table of results and one file of poses, and --shard docks a part
+/// of the table on each of several machines.
+#[derive(Args, Debug)]
+pub struct Batch {
+    /// Table of the pairs (CSV): columns `receptor` and `ligand` as for `knotdock dock`, optionally `name`, and further
+    /// columns named as options of `knotdock dock` that take a value (native, active_receptor, rotations ...). Files
+    /// are looked for from the table's folder.
+    #[arg(value_name = "PAIRS.CSV")]
+    pairs: PathBuf,
+    /// Directory of the batch [default: knotdock_PAIRS].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Threads of the whole batch. Small pairs are docked at the same time on one thread each, large ones by themselves
+    /// on all. A pair whose own options name a number of threads has that [default: all hardware threads].
+    #[arg(short = 'j', long, value_name = "COUNT", value_parser = at_least_one)]
+    threads: Option<usize>,
+    /// What is kept of each pair.
+    #[arg(long, value_name = "WHAT", value_enum, default_value_t = Keep::All)]
+    keep: Keep,
+    /// Rows of each pair that go to poses.csv.gz, best first, or `all` [default: 200].
+    #[arg(long, value_name = "COUNT", value_parser = all_or_at_least_one)]
+    rows: Option<AllOr>,
+    /// Dock one of N parts of the table, such as 3/100: every hundredth pair, from the third on. Its files are in
+    /// DIR/shards; `knotdock merge DIR` puts all parts together.
+    #[arg(long, value_name = "I/N")]
+    shard: Option<Shard>,
+    /// Folder on a disk of this machine in which the shard's files are until it is done.
+    #[arg(long, value_name = "FOLDER")]
+    scratch: Option<PathBuf>,
+    #[command(flatten)]
+    limits: Limits,
+    /// Dock pairs again that failed in an earlier call; with --keep all that is always done.
+    #[arg(long)]
+    retry_failed: bool,
+    /// Exit code 0 where pairs failed, as long as every pair was tried: the table has their errors.
+    #[arg(long)]
+    failures_ok: bool,
+    /// Options of `knotdock dock` for all pairs, after `--`; with --force runs of other inputs or options are replaced.
+    #[arg(last = true, value_name = "DOCK OPTIONS")]
+    options: Vec<String>,
+}
+
+impl Batch {
+    /// Docks the pairs; the exit code: 0 if all are done, 2 if what failed did so by its input, else 1.
+    pub fn run(self, console: Console) -> Result<u8, Failure> {
+        let directory = self.output.clone().unwrap_or_else(|| {
+            let stem = self.pairs.file_stem().unwrap_or_default();
+            PathBuf::from(format!("knotdock_{}", stem.to_string_lossy()))
+        });
+        if let Some(word) = self.options.iter().find(|word| is_of_program(word)) {
+            return Err(Failure::input(format!(
+                "{word} stands after --, where the options of each pair stand"
+            ))
+            .remedy(format!(
+                "give {word} before --: it is an option of the whole batch"
+            )));
+        }
+        let is_plain = self.shard.is_none() && self.keep == Keep::All;
+        if is_plain && (self.scratch.is_some() || self.retry_failed) {
+            return Err(
+                Failure::input("--scratch and --retry-failed need shards, and this batch writes a directory for each pair")
+                    .remedy("leave them out, or give --keep table, --keep none or --shard I/N"),
+            );
+        }
+        if self.rows.is_some() && !self.keep.has_poses() {
+            return Err(Failure::input(
+                "--rows needs poses.csv.gz, which this batch does not keep",
+            )
+            .remedy("leave it out, or give --keep table or --keep top"));
+        }
+        keep_recent();
+        let shard = self.shard.unwrap_or(Shard::WHOLE);
+        let Pairs { own, total, sha256 } = pairs(&self.pairs, shard, &directory, &self.options)?;
+        console.say(format!(
+            "Docking {} of {}{} into {}",
+            counted(own.len(), "pair"),
+            self.pairs.display(),
+            match self.shard {
+                Some(shard) => format!(" (shard {shard} of its {total})"),
+                None => String::new(),
+            },
+            directory.display()
+        ));
+        let rows = self.rows.unwrap_or(AllOr(Some(ROWS)));
+        let names = own
+            .iter()
+            .map(|pair| (pair.name.clone(), pair.row.checksum()));
+        let names = names.collect();
+        let kept = (self.keep, rows.0);
+        let run = BatchRun {
+            record: BatchRecord::new(shard, (total, sha256), self.options, kept, names),
+            directory,
+            scratch: self.scratch,
+            threads: self.threads,
+            limits: self.limits,
+            retry_failed: self.retry_failed,
+            is_shard: self.shard.is_some(),
+        };
+        let code = run.dock(own, console)?;
+        Ok(if self.failures_ok { 0 } else { code.0 })
+    }
+}
+
+/// Rows of a pair that are kept where their number is not given: some 35 kB.
+const ROWS: usize = 200;
+
+/// The exit code of a batch.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ExitCode(u8);
+
+impl ExitCode {
+    /// Takes account of a pair that failed.
+    pub fn add(&mut self, failure: &Failure) {
+        self.0 = match (self.0, failure.exit_code()) {
+            (0 | 2, 2) => 2,
+            _ => 1,
+        };
+    }
+
+    /// The code where so many pairs of this call and earlier ones failed.
+    pub fn of_failed(self, count: usize) -> Self {
+        match (self.0, count) {
+            (0, 1..) => Self(2),
+            _ => self,
+        }
+    }
+}

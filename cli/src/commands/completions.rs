@@ -1,0 +1,89 @@
+//! `knotdock completions` and `knotdock man`: what shells and `man` know of the command line, from its definition.
+
+use std::path::{Path, PathBuf};
+
+use clap::{Args, Command};
+use clap_complete::Shell;
+use clap_mangen::Man;
+use serde_json::json;
+
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+use knotdock::output::files::whole_file::{FileError, write_whole};
+
+/// Print the completions of a shell.
+///
+/// bash: knotdock completions bash > ~/.local/share/bash-completion/completions/knotdock
+/// zsh: knotdock completions zsh > _knotdock, in a folder of $fpath
+/// fish: knotdock completions fish > ~/.config/fish/completions/knotdock.fish
+#[derive(Args, Debug)]
+#[command(verbatim_doc_comment)]
+pub struct Completions {
+    /// The shell.
+    #[arg(value_enum, value_name = "SHELL")]
+    shell: Shell,
+}
+
+impl Completions {
+    /// Prints them, of the command line `command`.
+    pub fn run(self, mut command: Command, console: Console) -> Result<(), Failure> {
+        let mut script = Vec::new();
+        clap_complete::generate(self.shell, &mut command, "knotdock", &mut script);
+        let script = String::from_utf8(script).map_err(Failure::other)?;
+        console.say(script.trim_end());
+        console.result(&json!({ "text": script }))
+    }
+}
+
+/// Write the manual pages of all commands.
+///
+/// `man -l DIR/knotdock-dock.1` shows one; in a folder man1 of $MANPATH, `man knotdock-dock` does.
+#[derive(Args, Debug)]
+pub struct ManPages {
+    /// Folder for the pages, knotdock.1, knotdock-dock.1 and so on; it is made if need be.
+    #[arg(value_name = "DIR")]
+    directory: PathBuf,
+}
+
+impl ManPages {
+    /// Writes them, of the command line `command`.
+    pub fn run(self, command: Command, console: Console) -> Result<(), Failure> {
+        let directory = &self.directory;
+        let unwritable = |source| FileError::unwritable(directory, source);
+        std::fs::create_dir_all(directory).map_err(unwritable)?;
+        let mut command = shown_in_full(command.disable_help_subcommand(true));
+        command.build();
+        let mut pages = Vec::new();
+        write_page(&command, directory, &mut pages)?;
+        console.say(format!("{} pages in {}", pages.len(), directory.display()));
+        console.result(&json!({ "pages": pages }))
+    }
+}
+
+/// A command with all options in its short help: what is left out of that is left out of pages, too, where it has no
+/// longer help.
+fn shown_in_full(command: Command) -> Command {
+    let command = command.mut_args(|argument| argument.hide_short_help(false));
+    command.mut_subcommands(shown_in_full)
+}
+
+/// Writes the page of a command and those of its own commands.
+fn write_page(command: &Command, directory: &Path, pages: &mut Vec<String>) -> Result<(), Failure> {
+    let name = command
+        .get_display_name()
+        .unwrap_or_else(|| command.get_name())
+        .to_owned();
+    let path = directory.join(format!("{name}.1"));
+    let mut page = Vec::new();
+    Man::new(command.clone())
+        .render(&mut page)
+        .map_err(Failure::other)?;
+    let page = String::from_utf8(page).map_err(Failure::other)?;
+    let page = page.replace(".SH EXTRA", ".SH EXAMPLES");
+    write_whole(&path, |file| file.write_all(page.as_bytes()))?;
+    pages.push(path.display().to_string());
+    for below in command.get_subcommands() {
+        write_page(below, directory, pages)?;
+    }
+    Ok(())
+}

@@ -1,0 +1,377 @@
+//! `knotdock dock`: from two structures to a ranked list of poses and complexes.
+
+use std::path::{Path, PathBuf};
+
+use crate::tradeoff::choice::Wanted;
+use clap::{Arg, Args, Command, Id};
+use knotdock::dock::memory::process;
+use knotdock::options::values::{above_zero, duration};
+use knotdock::options::{DockOptions, EngineChoice, option_named};
+use knotdock::threads;
+use serde_json::Value;
+
+use crate::arguments::conformations::ConformationArguments;
+use crate::arguments::machine::settled;
+use crate::arguments::options::{GivenOptions, OfDock, OptionArguments};
+use crate::docking::{Clock, Docking};
+use crate::ensemble::Ensemble;
+use crate::inputs::bodies::Bodies;
+use crate::inputs::conformations::{Conformation, conformations};
+use crate::inputs::molecules::label;
+use crate::inputs::native::NativeArguments;
+use crate::inputs::request::Request;
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+
+/// Dock a ligand to a receptor and rank the poses.
+///
+/// Both are molecules, or both are meshes in one unit of length, in which all lengths are then given. The directory of
+/// the run gets report.html to look at, poses.csv, top/rank_0001.pdb and on (.obj of meshes) and run.json. The same
+/// input and options give the same bytes for any number of threads, except with --budget.
+#[derive(Args, Clone, Debug)]
+pub struct Dock {
+    /// The fixed molecule (.pdb, .cif, also .gz; FILE:H,L picks chains) or mesh (.stl, .obj).
+    ///
+    /// Molecules: .pdb, .ent or .cif, each also .gz. FILE:H,L picks chains by the author's names, FILE:H:1-120,L
+    /// residues too. Meshes: .stl, .obj, .ply or .off.
+    #[arg(required_unless_present = "rerun", value_name = "RECEPTOR")]
+    receptor: Option<String>,
+    /// The molecule or mesh that is moved.
+    #[arg(
+        required_unless_present_any = ["rerun", "symmetry", "config"],
+        value_name = "LIGAND"
+    )]
+    ligand: Option<String>,
+    /// Directory of the run [default: knotdock_RECEPTOR_LIGAND].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace the run in the directory, once the new one is done.
+    #[arg(long)]
+    force: bool,
+    /// Repeat the run that wrote this run.json.
+    ///
+    /// Its inputs are checked by SHA-256, and its options are taken.
+    #[arg(long, value_name = "RUN.JSON")]
+    rerun: Option<PathBuf>,
+    #[command(flatten)]
+    options: OptionArguments<OfDock>,
+    /// Choose tolerance, spacing and precision for an error within this share of the best score.
+    ///
+    /// The cheapest setting is taken whose error is expected to be within it: rms over the best poses of the grid.
+    #[arg(long, value_name = "SHARE", value_parser = above_zero, help_heading = WITHIN)]
+    #[arg(conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry")]
+    accuracy: Option<f64>,
+    /// End within a time on the clock, such as 5s or 2min.
+    ///
+    /// Reading and writing are included. The search covers all orientations evenly at any time, and stops when what
+    /// follows it just fits, by the pace measured so far; at most 56,250 rotations are searched. The same call need not
+    /// give the same bytes. run.json records where it stopped: `--rerun` of it gives the same bytes.
+    #[arg(long, value_name = "TIME", value_parser = duration, conflicts_with_all = ["rotations", "symmetry"], help_heading = WITHIN)]
+    budget: Option<f64>,
+    #[command(flatten)]
+    conformations: ConformationArguments,
+    #[command(flatten)]
+    native: NativeArguments,
+}
+
+/// Arguments that `knotdock dock -h` shows; `--help` shows all.
+const IN_BRIEF: [&str; 10] = [
+    "receptor",
+    "ligand",
+    "output",
+    "preset",
+    "active_receptor",
+    "active_ligand",
+    "restraints",
+    "symmetry",
+    "threads",
+    "native",
+];
+
+/// What stands below the options of `knotdock dock`.
+const EXAMPLES: &str = "\
+Examples:
+  knotdock dock receptor.pdb ligand.cif.gz
+  knotdock dock antibody.pdb:H,L antigen.pdb:A -o run
+  knotdock dock enzyme.pdb inhibitor.pdb --active-receptor A:57,189-195
+  knotdock dock subunit.pdb --symmetry C3
+  knotdock dock block.stl peg.stl";
+
+/// A command whose `-h` shows of the options of a run only those that most people need.
+pub fn in_brief(command: Command) -> Command {
+    let is_dock = command.get_name() == "dock";
+    let command = command.mut_args(|argument| {
+        let name = argument.get_id().as_str();
+        let is_option = is_dock || option_named(name).is_some();
+        let shown = IN_BRIEF.contains(&name) || !is_option;
+        argument.hide_short_help(!shown)
+    });
+    if is_dock {
+        let more = "`knotdock dock --help` lists all options, in groups.";
+        command
+            .after_help(format!("{EXAMPLES}\n\n{more}"))
+            .after_long_help(EXAMPLES)
+    } else {
+        command
+    }
+}
+
+/// What a command line comes to.
+pub enum Prepared {
+    /// One run.
+    Run(Box<Docking>),
+    /// A run for each pair of conformations.
+    Ensemble(Box<Ensemble>),
+}
+
+impl Prepared {
+    /// The directory that holds something else, which is not to be replaced.
+    pub fn in_the_way(&self) -> Option<&Path> {
+        match self {
+            Self::Run(docking) => docking.in_the_way(),
+            Self::Ensemble(ensemble) => ensemble.in_the_way(),
+        }
+    }
+
+    /// Whether the directory holds the results already.
+    pub fn is_done(&self, console: Console) -> bool {
+        match self {
+            Self::Run(docking) => docking.is_done(),
+            Self::Ensemble(ensemble) => ensemble.is_done(console),
+        }
+    }
+
+    /// Docks, and writes what comes of it; the JSON object. What ended commands left there is said on `notices`.
+    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
+        match self {
+            Self::Run(docking) => docking.run(console, notices),
+            Self::Ensemble(ensemble) => ensemble.run(console, notices),
+        }
+    }
+}
+
+/// Heading of the options that choose others.
+const WITHIN: &str = "Within an error or a time";
+
+/// Arguments that say where a run is and where it goes. Beside options of the machine, only these go with `--rerun`,
+/// and a batch sets them for its pairs.
+pub const PLACE: [&str; 3] = ["rerun", "output", "force"];
+
+/// The command of [`Dock`] in which `--rerun` goes with nothing that the run.json records.
+pub fn refusing_recorded(command: Command) -> Command {
+    let of_machine = |name: &str| option_named(name).is_some_and(|one| one.subject() == "machine");
+    let recorded: Vec<Id> = command
+        .get_arguments()
+        .map(Arg::get_id)
+        .filter(|id| !PLACE.contains(&id.as_str()) && !of_machine(id.as_str()))
+        .cloned()
+        .collect();
+    command.mut_arg("rerun", |rerun| rerun.conflicts_with_all(recorded))
+}
+
+impl Dock {
+    /// Whether options say where the run goes.
+    pub fn names_its_run(&self) -> bool {
+        self.output.is_some()
+    }
+
+    /// Refuses a file of options that cannot be read.
+    pub fn check_config(&self) -> Result<(), Failure> {
+        self.options.given().map(drop)
+    }
+
+    /// Threads that the options name, and whether the run has to be by itself: it measures time, or works on a graphics
+    /// processor.
+    pub fn own_threads(&self) -> Result<(Option<usize>, bool), Failure> {
+        let options = self.options.given()?.options;
+        let is_alone = self.budget.is_some() || options.search.engine == EngineChoice::Gpu;
+        Ok((options.machine.threads.threads, is_alone))
+    }
+
+    /// The run that the command line describes.
+    fn request(&self, given: GivenOptions) -> Result<Request, Failure> {
+        let given = given.of_rings()?;
+        let symmetry = given.options.search.symmetry;
+        // Of a ring the ligand is another copy of the receptor.
+        let ligand = match symmetry {
+            Some(_) if self.ligand.is_some() => {
+                return Err(Failure::input(
+                    "--symmetry docks copies of RECEPTOR, and LIGAND is given too",
+                )
+                .remedy("leave LIGAND out, or remove `symmetry` from the file of options"));
+            }
+            Some(_) => self.receptor.as_ref(),
+            None => self.ligand.as_ref(),
+        };
+        let (Some(receptor), Some(ligand)) = (&self.receptor, ligand) else {
+            return Err(Failure::input("a receptor and a ligand are needed").remedy(
+                "give both files, or one with --symmetry C2 (C3, D2 ...) for a ring of its copies",
+            ));
+        };
+        Request::read([receptor, ligand], self.native.read()?, given)
+    }
+
+    /// Reads and plans, and hands the docking on to `then`: all on the threads that the options name.
+    /// `count` takes their place where it is given.
+    pub fn prepared<T: Send>(
+        self,
+        console: Console,
+        count: Option<usize>,
+        then: impl FnOnce(Prepared) -> Result<T, Failure> + Send,
+    ) -> Result<T, Failure> {
+        let clock = Clock::start();
+        process::begin();
+        let mut given = self.options.given()?;
+        if let Some(count) = count {
+            given.options.machine.threads = count.into();
+        }
+        // Known before anything is read, for reading takes memory, too.
+        given.options.machine = settled(&given.options.machine);
+        threads::on(given.options.machine.threads.count(), || {
+            then(self.prepare(given, clock, console)?)
+        })?
+    }
+
+    /// The conformations of both sides, where options name any.
+    fn sides(&self) -> Result<Option<[Vec<Conformation>; 2]>, Failure> {
+        let ConformationArguments {
+            receptor_models,
+            ligand_models,
+            receptor_also,
+            ligand_also,
+        } = &self.conformations;
+        let (Some(receptor), Some(ligand), true) =
+            (&self.receptor, &self.ligand, self.conformations.are_given())
+        else {
+            return Ok(None);
+        };
+        Ok(Some([
+            conformations(receptor, receptor_also, receptor_models.as_ref())?,
+            conformations(ligand, ligand_also, ligand_models.as_ref())?,
+        ]))
+    }
+
+    /// Reads and plans.
+    fn prepare(
+        self,
+        given: GivenOptions,
+        clock: Clock,
+        console: Console,
+    ) -> Result<Prepared, Failure> {
+        let wanted = Wanted {
+            accuracy: self.accuracy,
+            budget: self.budget,
+        };
+        let request = match (&self.rerun, self.sides()?) {
+            (Some(path), _) => Request::recorded(path, given.options.machine, console)?,
+            (None, None) => self.request(given)?,
+            (None, Some([receptors, ligands])) => {
+                let native = self.native.read()?;
+                if let ([receptor], [ligand]) = (receptors.as_slice(), ligands.as_slice()) {
+                    let specs = [receptor.spec.clone(), ligand.spec.clone()];
+                    Request::of(Bodies::of(specs, &given.options)?, native, given)
+                } else {
+                    if wanted != Wanted::default() {
+                        check_wanted(&given.options)?;
+                    }
+                    let sides = [receptors, ligands];
+                    let directory = self.output.unwrap_or_else(|| named_after(&sides));
+                    let place = (directory, self.force);
+                    let asked = (given, native, wanted);
+                    let ensemble = Ensemble::prepare(&sides, asked, place, clock, console)?;
+                    return Ok(Prepared::Ensemble(Box::new(ensemble)));
+                }
+            }
+        };
+        let directory = self.output.unwrap_or_else(|| request.directory());
+        if wanted != Wanted::default() {
+            check_wanted(&request.options)?;
+        }
+        let docking = Docking::prepare(request, wanted, (directory, self.force), clock, console)?;
+        Ok(Prepared::Run(Box::new(docking)))
+    }
+
+    /// Docks.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let done = self.prepared(console, None, |prepared| prepared.run(console, console))?;
+        console.result(&done)?;
+        Ok(())
+    }
+}
+
+/// The directory of an ensemble that names none: that of the run of its first conformations.
+fn named_after(sides: &[Vec<Conformation>; 2]) -> PathBuf {
+    let label = |side: &Vec<Conformation>| {
+        let first = side.first().map(|conformation| &conformation.spec);
+        first.map_or_else(String::new, |spec| {
+            label(&spec.path, spec.chains.as_deref())
+        })
+    };
+    let [receptor, ligand] = sides.each_ref().map(label);
+    PathBuf::from(format!("knotdock_{receptor}_{ligand}"))
+}
+
+/// Refuses options for which nothing can be chosen by an error or a time.
+fn check_wanted(options: &DockOptions) -> Result<(), Failure> {
+    if options.search.engine == EngineChoice::Gpu {
+        let error = "--accuracy and --budget use the times of the CPU, and --engine gpu is given";
+        return Err(Failure::input(error)
+            .remedy("set --rotations, --tolerance and --spacing, or dock with --engine cpu"));
+    }
+    if options.search.symmetry.is_some() {
+        return Err(
+            Failure::input("--accuracy and --budget do not work with --symmetry")
+                .remedy("set --rotations, --tolerance and --spacing"),
+        );
+    }
+    Ok(())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock::options::definitions;
+
+    /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the
+    /// machine are not.
+    #[test]
+    fn rerun_goes_with_nothing_that_is_recorded() {
+        let run = |word: &str| {
+            let command = refusing_recorded(Dock::augment_args(Command::new("dock")));
+            let words = ["dock", "--rerun=run.json", "-o", "out", "--force", word];
+            command.try_get_matches_from(words).map(drop)
+        };
+        for option in definitions().iter().filter(|one| !one.is_of_files()) {
+            let value = match option.name() {
+                "sample_weights" => "unit",
+                "sampler" => "bi",
+                "precision" => "double",
+                "antibody" => "whole",
+                "waters" | "hetatm" | "hydrogens" => "keep",
+                "effects" => "shape",
+                "symmetry" => "C3",
+                "fine_share" => "0.5",
+                "engine" => "gpu",
+                "sample_grid" => "2^12",
+                _ => "1",
+            };
+            let word = if option.is_flag() {
+                format!("--{}", option.long())
+            } else if option.names_file() {
+                continue;
+            } else {
+                option.word(value)
+            };
+            let refused = run(&word).is_err();
+            assert_eq!(refused, option.subject() != "machine", "{word}");
+        }
+        for word in [
+            "receptor.pdb",
+            "--native=a.pdb",
+            "--budget=5s",
+            "--config=a.toml",
+        ] {
+            assert!(run(word).is_err(), "{word}");
+        }
+    }
+}

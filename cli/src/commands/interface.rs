@@ -1,0 +1,218 @@
+//! `knotdock interface`: what holds a complex together, and how it scores, of any complex file.
+
+use std::path::PathBuf;
+
+use crate::tables::interface::{InterfaceRow, objects, write_pairs, write_rows};
+use crate::tables::report::{align, counted};
+use clap::Args;
+use knotdock::interface::{Interface, PlacedScore, score_in_place};
+use knotdock::options::DockOptions;
+use knotdock::output::files::whole_file::write_whole;
+use knotdock::threads;
+use knotdock_structures::molecule::Molecule;
+use serde_json::json;
+
+use crate::arguments::options::{OfScore, OptionArguments};
+use crate::arguments::output_file::check_output;
+use crate::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_model};
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+use crate::messages::library_errors::refused;
+
+/// Describe the interface of complexes: contacts, hydrogen bonds, salt bridges, buried surface, and the score of each.
+///
+/// Any complex file will do: of a crystal, of a predictor, of another docking program, or of knotdock.
+#[derive(Args, Debug)]
+pub struct InterfaceCommand {
+    /// Complex files (.pdb, .ent, .cif, each also .gz), and optionally the chains of both sides, such as H,L A. Without
+    /// them the sides are those that a complex of knotdock names, or the two chains of a file that has two. Every model of
+    /// a file is described.
+    #[arg(value_name = "COMPLEX ... [CHAINS CHAINS]", required = true)]
+    words: Vec<String>,
+    /// Write a row for each model of each file to this table.
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
+    /// Write a row for each pair of residues in contact to this table.
+    #[arg(long, value_name = "FILE")]
+    contacts: Option<PathBuf>,
+    /// Replace these files where they are already there.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    options: OptionArguments<OfScore>,
+}
+
+impl InterfaceCommand {
+    /// Describes the complexes; the exit code: 2 where some could not be.
+    pub fn run(self, console: Console) -> Result<u8, Failure> {
+        let options = self.options.given()?.options;
+        threads::on(options.machine.threads.count(), || {
+            self.describe(&options, console)
+        })?
+    }
+
+    /// Describes them on the threads of the caller.
+    fn describe(&self, options: &DockOptions, console: Console) -> Result<u8, Failure> {
+        let (files, sides) = files_and_chains(&self.words, "interface")?;
+        let read: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
+        for file in [&self.output, &self.contacts].into_iter().flatten() {
+            check_output(file, read.iter().map(PathBuf::as_path), self.force, console)?;
+        }
+        let (files, reading) = ((files, sides.as_ref()), options.input.reading());
+        let (rows, code) = for_each_model(files, &reading, console, |file, sides| {
+            row(file, sides, options)
+        })?;
+        if let Some(path) = &self.output {
+            write_whole(path, |file| write_rows(file, &rows))?;
+        }
+        if let Some(path) = &self.contacts {
+            write_whole(path, |file| write_pairs(file, &rows))?;
+        }
+        match rows.as_slice() {
+            [row] => console.say(text(row)),
+            rows => console.say(listing(rows)),
+        }
+        console.result(&json!({ "complexes": objects(&rows) }))?;
+        Ok(code)
+    }
+}
+
+/// The interface of a model of a file.
+fn row(file: &str, sides: ComplexSides, options: &DockOptions) -> Result<InterfaceRow, Failure> {
+    let molecules: [&Molecule; 2] = sides.molecules.each_ref();
+    let interface = Interface::of(molecules, options.terms.ph);
+    if interface.pairs.is_empty() {
+        return Err(Failure::input(format!(
+            "the sides do not touch: no heavy atoms of chains {} and {} are within 5 Å of each other",
+            sides.chains[0], sides.chains[1]
+        ))
+        .at(&sides.path)
+        .remedy("name the chains of both sides, as in `knotdock interface x.pdb H,L A`"));
+    }
+    let score: PlacedScore = score_in_place(molecules, options).map_err(refused)?;
+    Ok(InterfaceRow {
+        file: file.to_owned(),
+        model: sides.model,
+        chains: sides.chains,
+        interface,
+        score,
+    })
+}
+
+/// One complex in words.
+fn text(row: &InterfaceRow) -> String {
+    let InterfaceRow {
+        interface, score, ..
+    } = row;
+    let [first, second] = &row.chains;
+    let mut lines = vec![
+        [
+            "residue",
+            "residue",
+            "distance",
+            "hydrogen bonds",
+            "salt bridge",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+    ];
+    lines.extend(
+        interface
+            .pairs
+            .iter()
+            .filter(|pair| pair.hydrogen_bonds > 0 || pair.salt_bridge)
+            .map(|pair| {
+                let [a, b] = pair.residues.each_ref().map(|residue| {
+                    format!("{} {}:{}", residue.name, residue.chain, residue.number)
+                });
+                let bonds = pair.hydrogen_bonds;
+                vec![
+                    a,
+                    b,
+                    format!("{:.2}", pair.distance),
+                    if bonds > 0 {
+                        bonds.to_string()
+                    } else {
+                        String::new()
+                    },
+                    if pair.salt_bridge {
+                        "yes".to_owned()
+                    } else {
+                        String::new()
+                    },
+                ]
+            }),
+    );
+    format!(
+        "{}, chains {first} with {second}\n\
+         {} of {} and {} residues; {} and {}; {:.0} Å² buried ({:.0} and {:.0}){}\n\
+         Score {:.1}: {}\n\n{}",
+        row.file,
+        counted(interface.pairs.len(), "contact"),
+        interface.residues[0],
+        interface.residues[1],
+        counted(interface.hydrogen_bonds, "hydrogen bond"),
+        counted(interface.salt_bridges, "salt bridge"),
+        interface.buried[0] + interface.buried[1],
+        interface.buried[0],
+        interface.buried[1],
+        match interface.shape_complementarity {
+            Some(value) => format!("; shape complementarity {value:.2}"),
+            None => String::new(),
+        },
+        score.pose_score(),
+        terms(score),
+        align(&lines)
+    )
+}
+
+/// The terms of a score in words.
+fn terms(score: &PlacedScore) -> String {
+    let effects = knotdock_scoring::terms::effect::Effect::ALL
+        .into_iter()
+        .filter_map(|effect| {
+            Some(format!(
+                "{} {:.1}",
+                effect.name(),
+                score.effects[effect as usize]?
+            ))
+        });
+    let pose = score
+        .pose_terms
+        .iter()
+        .filter_map(|(term, value)| Some(format!("{} {:.1}", term.label, value?)));
+    effects.chain(pose).collect::<Vec<_>>().join(", ")
+}
+
+/// Many complexes as a table.
+fn listing(rows: &[InterfaceRow]) -> String {
+    let header = [
+        "file",
+        "model",
+        "chains",
+        "contacts",
+        "hydrogen bonds",
+        "salt bridges",
+        "buried, Å²",
+        "Sc",
+        "score",
+    ];
+    let mut lines = vec![header.map(str::to_owned).to_vec()];
+    lines.extend(rows.iter().map(|row| {
+        let interface = &row.interface;
+        vec![
+            row.file.clone(),
+            row.model.to_string(),
+            format!("{} {}", row.chains[0], row.chains[1]),
+            interface.pairs.len().to_string(),
+            interface.hydrogen_bonds.to_string(),
+            interface.salt_bridges.to_string(),
+            format!("{:.0}", interface.buried[0] + interface.buried[1]),
+            interface
+                .shape_complementarity
+                .map_or_else(String::new, |value| format!("{value:.2}")),
+            format!("{:.1}", row.score.pose_score()),
+        ]
+    }));
+    align(&lines)
+}

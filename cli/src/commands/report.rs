@@ -1,0 +1,125 @@
+//! `knotdock report`: a page on which results are looked at.
+
+use std::path::{Path, PathBuf};
+
+use crate::records::recorded_run::{RecordedRun, RecordedRunError};
+use crate::report::{Listed, RunReport, Viewer};
+use clap::Args;
+use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
+use knotdock::options::Threads;
+use knotdock::output::files::added::Addition;
+use knotdock::output::files::own_files::is_run;
+use knotdock::output::files::seal::{REPORT, is_sealed};
+use knotdock::output::files::staging::put_back;
+use knotdock::output::tables::poses::PoseTable;
+use knotdock::threads;
+use serde_json::{Value, json};
+
+use crate::arguments::viewer::ViewerArguments;
+use crate::inputs::bodies::Bodies;
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+use crate::messages::leftovers::warn_leftovers;
+
+/// Write report.html of runs, batches, ensembles and sweeps: results as a table, in three dimensions and in charts.
+///
+/// It opens in any browser, offline. `knotdock dock` writes it by itself; this writes it again, as after `knotdock
+/// evaluate`, or with the view where the program was built without it.
+#[derive(Args, Debug)]
+pub struct Report {
+    /// Directories that `dock`, `batch` or `tradeoff` wrote.
+    #[arg(value_name = "DIR", required = true)]
+    runs: Vec<PathBuf>,
+    #[command(flatten)]
+    viewer: ViewerArguments,
+    /// Replace reports that someone has changed.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+impl Report {
+    /// Writes the reports.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.write(console))?
+    }
+
+    fn write(self, console: Console) -> Result<(), Failure> {
+        let viewer = self.viewer.read()?;
+        let mut written: Vec<String> = Vec::new();
+        for run in &self.runs {
+            put_back(run)?;
+            let path = run.join(REPORT);
+            if path.symlink_metadata().is_ok() && !is_sealed(&path) && !self.force {
+                return Err(
+                    Failure::input("the report there was changed since it was written")
+                        .at(&path)
+                        .remedy("keep it under another name, or pass --force to replace it"),
+                );
+            }
+            let text = page(run, viewer.as_ref())?;
+            warn_leftovers(&place(run, &text, self.force)?, console);
+            console.say(path.display().to_string());
+            written.push(path.display().to_string());
+        }
+        console.result(&json!({ "reports": written }))
+    }
+}
+
+/// Writes the report of a batch into its directory. One that someone has changed stays.
+pub fn write_listed(directory: &Path, console: Console) -> Result<(), Failure> {
+    let path = directory.join(REPORT);
+    if path.symlink_metadata().is_ok() && !is_sealed(&path) {
+        console.warn(format!(
+            "{} was changed since it was written and is left unchanged; `knotdock report --force` replaces it",
+            path.display()
+        ));
+        return Ok(());
+    }
+    warn_leftovers(&place(directory, &page(directory, None)?, true)?, console);
+    Ok(())
+}
+
+/// Writes a report into a directory; what ended commands left there.
+fn place(directory: &Path, text: &str, force: bool) -> Result<Vec<PathBuf>, Failure> {
+    let addition = Addition::open(directory, is_run(directory).then_some(directory))?;
+    let leftovers = addition.leftovers.clone();
+    let stage = addition.stage();
+    stage.write(REPORT, |file| file.write_all(text.as_bytes()))?;
+    addition.place(force)?;
+    Ok(leftovers)
+}
+
+/// The page of a directory.
+fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Failure> {
+    let name = directory.display().to_string();
+    if let Some(listed) = Listed::in_directory(directory) {
+        return Ok(listed.report(directory, directory, &name)?);
+    }
+    let record_path = directory.join("run.json");
+    let run = RecordedRun::read(&record_path)?;
+    let record = value(&record_path)?;
+    let table = PoseTable::read(&directory.join("poses.csv"))?;
+    let bodies = Bodies::recorded([&run.receptor, &run.ligand], &record_path, &run.options)?;
+    let contacts = bodies.contacts(&table, &run.options);
+    let report = RunReport {
+        record: &record,
+        options: &run.options,
+        table: &table,
+        bodies: bodies.shown(contacts.as_ref()),
+        directory: &name,
+    };
+    Ok(report.text(viewer))
+}
+
+/// A record as JSON.
+fn value(path: &Path) -> Result<Value, Failure> {
+    let open = |source| RecordedRunError::Open {
+        path: path.to_owned(),
+        source,
+    };
+    let bytes = read_bounded_file(path, MAX_RECORD).map_err(open)?;
+    let value = serde_json::from_slice(&bytes);
+    value.map_err(|error| Failure::input(error).at(path))
+}

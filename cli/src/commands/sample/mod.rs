@@ -1,0 +1,293 @@
+//! `knotdock sample`: a mesh as balls.
+
+mod files;
+mod sample_report;
+
+use std::path::PathBuf;
+use std::time::Instant;
+
+use clap::{Args, ValueEnum};
+use knotdock::options::values::{above_zero, at_least_one, protrusion};
+use knotdock::options::{SampleGrid, Threads};
+use knotdock::threads;
+use knotdock_structures::mesh::{self, Solid};
+use knotdock_structures::numeric::Bump;
+use knotdock_structures::sampling::decomposition::DecompositionOptions;
+use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
+use knotdock_structures::sampling::weights::{self, FittedWeights};
+use knotdock_structures::sampling::{
+    Ball, BallSet, Method, Sampling, SetName, Step, knots, sample,
+};
+use knotdock_structures::sphere_tree::SphereTree;
+use serde_json::json;
+
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+use sample_report::{SampleReport, weights_text};
+
+/// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
+///
+/// Reads STL, OBJ, PLY and OFF, in text and binary. The method is Behandish and Ilies' Algorithm 1. A1 lies inside
+/// the solid, A2 is A1 grown by epsilon and covers it, and A3 is A2 without redundant balls. Each is within epsilon
+/// of the solid, which is measured. Lengths are in the file's unit.
+#[derive(Args, Debug)]
+pub struct Sample {
+    /// The mesh: .stl, .obj, .ply or .off.
+    #[arg(value_name = "MESH")]
+    mesh: PathBuf,
+    /// Nodes of the grid, as 2^18 or 262144: a cube of the nearest whole number of nodes an axis.
+    #[arg(long, value_name = "COUNT", default_value = "2^18")]
+    grid: SampleGrid,
+    /// How balls are chosen.
+    #[arg(long, value_enum, default_value_t = MethodName::Bi)]
+    method: MethodName,
+    /// Protrusion factor of method bi, 0 to 1: the less, the more and the smoother the balls of A1 [default: 0.25].
+    #[arg(long, value_parser = protrusion)]
+    mu: Option<f64>,
+    /// Which set of method bi to write [default: a3].
+    #[arg(long, value_enum)]
+    set: Option<SetChoice>,
+    /// Refuse doubtful meshes: meshes that are not closed, with triangles that face the wrong way, are there several
+    /// times or bound nothing, or with inner parts that face outward. Meshes of which something was left out on
+    /// reading are refused too, and closed ones that the balls do not come within epsilon of.
+    #[arg(long)]
+    strict: bool,
+    /// Weights of the balls: one, or those whose summed bumps come closest to one inside and to zero outside.
+    #[arg(long, value_enum, default_value_t = Weights::Unit)]
+    weights: Weights,
+    /// Exponent of the bump that weights are fitted for, with --weights fitted [default: 2].
+    #[arg(long, value_parser = above_zero)]
+    alpha: Option<f64>,
+    /// Write no more balls than this: a level of a tree of bounding balls over the set, which covers what the set
+    /// covers.
+    #[arg(long, value_name = "BALLS", value_parser = at_least_one, conflicts_with = "weights")]
+    level: Option<usize>,
+    /// The table of balls to write.
+    #[arg(short, long, value_name = "FILE", default_value = "knots.csv")]
+    output: PathBuf,
+    /// Draw slices of depth, skeletal density and balls, and the balls from outside.
+    #[arg(long, value_name = "FILE.svg")]
+    picture: Option<PathBuf>,
+    /// Write the balls as a mesh of spheres (.obj) or as pseudo-atoms (.pdb) too.
+    #[arg(long, value_name = "FILE.obj|FILE.pdb")]
+    export: Option<PathBuf>,
+    /// Replace files that are there.
+    #[arg(long)]
+    force: bool,
+    #[command(flatten)]
+    threads: Threads,
+}
+
+/// Exponent of the bump that weights are fitted for, unless another is given.
+const FITTED_ALPHA: f64 = 2.0;
+
+/// [`Method`] by its name.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum MethodName {
+    /// Behandish and Ilies, Algorithm 1.
+    Bi,
+    /// Weller and Zachmann, packing of the largest ball that fits.
+    Wz,
+    /// Balls about the cells of an octree.
+    Octree,
+    /// A ball about every voxel.
+    Voxels,
+}
+
+/// [`SetName`] of method bi.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum SetChoice {
+    /// Inside the solid.
+    A1,
+    /// Covering the solid.
+    A2,
+    /// The fewest balls.
+    A3,
+}
+
+/// What weights balls get.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+enum Weights {
+    /// One.
+    Unit,
+    /// Fitted by nonnegative least squares.
+    Fitted,
+}
+
+/// The balls to write, and what was done to them.
+struct Finished {
+    balls: Vec<Ball>,
+    fitted: Option<FittedWeights>,
+    /// Fit of a level of detail.
+    level: Option<Fit>,
+    step: Option<Step>,
+}
+
+impl Sample {
+    /// Samples.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        threads::on(self.threads.count(), || self.sample(console))?
+    }
+
+    /// Samples on the threads of the caller.
+    fn sample(self, console: Console) -> Result<(), Failure> {
+        let method = self.method()?;
+        let export = self.check_files(console)?;
+        let start = Instant::now();
+        let (mesh, report) = mesh::read(&self.mesh)?;
+        let reading = Step::since("reading the mesh", start);
+        console.say(format!("Mesh: {report}"));
+        self.warn(report.warnings(), &console)?;
+        let solid = Solid::new(&mesh).map_err(|error| Failure::input(error).at(&self.mesh))?;
+        let mut sampling = sample(&solid, self.grid.per_axis, method).map_err(|error| {
+            Failure::input(error).at(&self.mesh).remedy(
+                "check that the mesh is closed and one solid, or sample it on a finer --grid",
+            )
+        })?;
+        sampling.steps.insert(0, reading);
+
+        let start = Instant::now();
+        let meter = HausdorffMeter::new(&solid, &sampling.field);
+        let fits: Vec<Fit> = sampling
+            .sets
+            .iter()
+            .map(|set| meter.measure(&set.balls))
+            .collect();
+        let step = Step::since("measuring the fit", start);
+        sampling.steps.push(step);
+
+        let mut warnings = report.warnings();
+        if report.is_closed() {
+            let reported = SampleReport::new(&sampling, &fits, &solid, &meter);
+            let doubts = reported.doubts();
+            self.warn(doubts.clone(), &console)?;
+            warnings.extend(doubts);
+        }
+        if sampling.inside_nodes == 0 {
+            let unseen = "no node of the grid lies inside the mesh, so volumes are not measured; a finer --grid has some".to_owned();
+            console.warn(&unseen);
+            warnings.push(unseen);
+        }
+        let finished = self.finish(&sampling, &meter)?;
+        sampling.steps.extend(finished.step);
+        let frame = solid.frame();
+        let fitted = finished.fitted.as_ref();
+        let weights = fitted.map(|fitted| fitted.weights.as_slice());
+        let knots = knots(frame, &finished.balls, weights)
+            .map_err(|error| Failure::input(error).at(&self.mesh))?;
+        let written = self.write(&solid, &knots, &finished.balls, export)?;
+
+        let reported = SampleReport::new(&sampling, &fits, &solid, &meter);
+        console.say(format!("\n{}", reported.text()));
+        if let Some(fitted) = fitted {
+            console.say(format!("\n{}", weights_text(fitted)));
+        }
+        if let Some(fit) = &finished.level {
+            console.say(format!("\n{}", reported.level(finished.balls.len(), fit)));
+        }
+        console.say(format!(
+            "\nWrote {} balls to {}",
+            knots.len(),
+            written.join(", ")
+        ));
+        let mut object = reported.object();
+        object["knots"] = json!(self.output.display().to_string());
+        object["files"] = json!(written);
+        object["balls"] = json!(knots.len());
+        object["set"] = json!(chosen_name(&self, &sampling));
+        object["mesh"] = json!(report);
+        object["warnings"] = json!(warnings);
+        object["level"] = json!(finished.level.map(|fit| reported.fit(&fit)));
+        object["weights"] = json!(finished.fitted);
+        console.result(&object)?;
+        Ok(())
+    }
+
+    /// Warns of what is wrong with the mesh, or refuses it.
+    fn warn(&self, warnings: Vec<String>, console: &Console) -> Result<(), Failure> {
+        for warning in warnings {
+            if self.strict {
+                return Err(Failure::input(warning)
+                    .at(&self.mesh)
+                    .remedy("repair the mesh, or leave --strict out to sample what the winding number calls inside"));
+            }
+            console.warn(warning);
+        }
+        Ok(())
+    }
+
+    /// The balls to write: the chosen set, weighted or thinned out as requested.
+    fn finish(&self, sampling: &Sampling, meter: &HausdorffMeter) -> Result<Finished, Failure> {
+        let start = Instant::now();
+        let mut finished = Finished {
+            balls: self.chosen(sampling)?.balls.clone(),
+            fitted: None,
+            level: None,
+            step: None,
+        };
+        if self.weights == Weights::Fitted {
+            if sampling.inside_nodes == 0 {
+                return Err(Failure::input(
+                    "weights are fitted at nodes of the grid inside the mesh, and there are none",
+                )
+                .at(&self.mesh)
+                .remedy("sample it on a finer --grid, or leave out --weights fitted"));
+            }
+            let (field, volume) = (&sampling.field, meter.volume());
+            let bump = Bump::new(self.alpha.unwrap_or(FITTED_ALPHA)).map_err(|error| {
+                Failure::input(error).remedy("give --alpha a number above zero")
+            })?;
+            finished.fitted = Some(weights::fit(field, &finished.balls, bump, volume));
+            finished.step = Some(Step::since("fitting weights", start));
+        }
+        if let Some(count) = self.level {
+            if let Some(tree) = SphereTree::new(&finished.balls) {
+                finished.balls = tree.level(count);
+            }
+            finished.level = Some(meter.measure(&finished.balls));
+            finished.step = Some(Step::since("sphere tree", start));
+        }
+        Ok(finished)
+    }
+
+    /// The method with its options; options of other methods, and of weights that are not fitted, are refused.
+    fn method(&self) -> Result<Method, Failure> {
+        if self.method != MethodName::Bi && (self.mu.is_some() || self.set.is_some()) {
+            return Err(Failure::input("--mu and --set need --method bi")
+                .remedy("leave them out, or sample with --method bi"));
+        }
+        if self.weights != Weights::Fitted && self.alpha.is_some() {
+            return Err(Failure::input("--alpha needs --weights fitted")
+                .remedy("add --weights fitted, or leave --alpha out"));
+        }
+        Ok(match self.method {
+            MethodName::Bi => {
+                let default = DecompositionOptions::default();
+                Method::BehandishIlies(DecompositionOptions {
+                    mu: self.mu.unwrap_or(default.mu),
+                    ..default
+                })
+            }
+            MethodName::Wz => Method::WellerZachmann,
+            MethodName::Octree => Method::Octree,
+            MethodName::Voxels => Method::Voxels,
+        })
+    }
+
+    /// The set to write.
+    fn chosen<'a>(&self, sampling: &'a Sampling) -> Result<&'a BallSet, Failure> {
+        let name = chosen_name(self, sampling);
+        let found = sampling.sets.iter().find(|set| Some(set.name) == name);
+        found.ok_or_else(|| Failure::other("the sampler gave no such set"))
+    }
+}
+
+/// The name of the set to write.
+fn chosen_name(sample: &Sample, sampling: &Sampling) -> Option<SetName> {
+    match (sample.method, sample.set) {
+        (MethodName::Bi, Some(SetChoice::A1)) => Some(SetName::A1),
+        (MethodName::Bi, Some(SetChoice::A2)) => Some(SetName::A2),
+        (MethodName::Bi, _) => Some(SetName::A3),
+        _ => sampling.sets.first().map(|set| set.name),
+    }
+}

@@ -1,0 +1,292 @@
+//! `knotdock score`: one pose, exactly and from ever more modes.
+
+use crate::tables::report;
+use clap::{Args, ValueEnum};
+use knotdock::dock::scene::Scene;
+use knotdock::options::DockOptions;
+use knotdock::options::values::at_least_one;
+use knotdock::pose_geometry::PoseGeometry;
+use knotdock::pose_space::arrangement::Arrangement;
+use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
+use knotdock::threads;
+use knotdock_scoring::se3::Pose;
+use knotdock_scoring::terms::pose::{TermValues, Workspace};
+use knotdock_scoring::transform::truncation::ModeOrder;
+
+use crate::arguments::memory;
+use crate::arguments::options::{GivenOptions, OfScore, OptionArguments};
+use crate::inputs::bodies::{Bodies, spec_of};
+use crate::inputs::molecules::Input;
+use crate::inputs::poses::pose;
+use crate::inputs::request::lengths;
+use crate::inputs::shapes::is_shape;
+use crate::inputs::traces::refuse_traces;
+use crate::messages::console::Console;
+use crate::messages::dock::{known_text, regions_text, site_text};
+use crate::messages::failure::Failure;
+use crate::messages::library_errors::refused;
+
+/// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
+///
+/// The number of modes m counts three-dimensional frequencies with their conjugates, and doubles until the error is
+/// below 1e-3 of the exact value or of the scale, the best score at this rotation.
+#[derive(Args, Debug)]
+pub struct Score {
+    /// The molecule that stays: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names,
+    /// FILE:H:1-120,L residues too. Or a mesh: .stl, .obj, .ply or .off.
+    #[arg(value_name = "RECEPTOR")]
+    receptor: String,
+    /// The molecule that is moved.
+    #[arg(value_name = "LIGAND")]
+    ligand: String,
+    /// The pose, as poses.csv has it: a unit quaternion and a translation in Å. A ligand atom at x goes to R x + t.
+    #[arg(long, value_name = "QW,QX,QY,QZ,TX,TY,TZ", allow_hyphen_values = true)]
+    pose: String,
+    /// A number of modes that the table is to contain.
+    #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
+    modes: Option<usize>,
+    /// Which modes come first.
+    #[arg(long, value_enum, default_value_t = Order::LowFrequency)]
+    order: Order,
+    #[command(flatten)]
+    options: OptionArguments<OfScore>,
+}
+
+/// [`ModeOrder`] by its name.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+enum Order {
+    /// From frequency zero outward.
+    LowFrequency,
+    /// By falling magnitude at the pose's rotation.
+    Magnitude,
+}
+
+impl Score {
+    /// Scores.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let pose = pose(&self.pose)?;
+        let given = self.options.given()?;
+        let mut are_meshes = false;
+        for text in [&self.receptor, &self.ligand] {
+            are_meshes |= is_shape(&spec_of(text)?.path);
+        }
+        threads::on(given.options.machine.threads.count(), || {
+            if are_meshes {
+                self.score_meshes(&pose, given, console)
+            } else {
+                self.score(&pose, &given.options, console)
+            }
+        })?
+    }
+
+    /// Options of the ladder.
+    fn ladder(&self, dock: &DockOptions) -> ScoreOptions {
+        ScoreOptions {
+            engine: dock.kernel.engine(),
+            modes: self.modes,
+            order: match self.order {
+                Order::LowFrequency => ModeOrder::LowFrequency,
+                Order::Magnitude => ModeOrder::Magnitude,
+            },
+            memory: memory::default_limit(),
+        }
+    }
+
+    /// Scores two meshes, sampled as `dock` samples them.
+    fn score_meshes(
+        &self,
+        pose: &Pose,
+        given: GivenOptions,
+        console: Console,
+    ) -> Result<(), Failure> {
+        let lengths = lengths(&given);
+        let mut dock = given.options;
+        let bodies = Bodies::read(&self.receptor, &self.ligand, &dock)?;
+        bodies.describe(Arrangement::Pair, console);
+        let Some(sampling) = bodies.sampling(&mut dock, lengths, console)? else {
+            return Err(Failure::input("two meshes are needed"));
+        };
+        let scene = Scene::of_meshes(&sampling.pair, &dock).map_err(refused)?;
+        let scored = score::score(&scene, pose, &self.ladder(&dock)).map_err(refused)?;
+        console.say(format!("\n{}", ladder_text(&scored, "unit")));
+        let mut object = serde_json::to_value(&scored).map_err(Failure::other)?;
+        if let Some(object) = object.as_object_mut() {
+            object.insert("pose".to_owned(), pose_numbers(pose));
+            let parts = serde_json::to_value(&sampling.pair.parts).map_err(Failure::other)?;
+            object.insert("sampling".to_owned(), parts);
+            object.insert("pose_score".to_owned(), serde_json::json!(scored.exact));
+        }
+        console.result(&object)?;
+        Ok(())
+    }
+
+    /// Scores on the threads of the caller.
+    fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Failure> {
+        let options = self.ladder(dock);
+        let reading = dock.input.reading();
+        let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
+        refuse_traces(["receptor", "ligand"].into_iter().zip(&inputs))?;
+        let [receptor, ligand] = inputs.map(|input| input.molecule);
+        console.say(format!("Receptor: {}", receptor.report));
+        console.say(format!("Ligand: {}", ligand.report));
+        let scene = Scene::new(&receptor, &ligand, dock).map_err(refused)?;
+        let scored = score::score(&scene, pose, &options).map_err(refused)?;
+        let geometry = PoseGeometry::of(&receptor, &ligand, pose).map_err(Failure::input)?;
+        let pose_terms = scene
+            .rescorer(dock)
+            .map_or_else(TermValues::default, |rescorer| {
+                rescorer.score(pose, &mut Workspace::default())
+            });
+        let pose_score = scored.exact + pose_terms.sum();
+        console.say(format!("\n{}", ladder_text(&scored, "Å")));
+        for text in known_text(&["receptor", "ligand"], &scene.restraints) {
+            console.say(format!("Known: {text}"));
+        }
+        for text in regions_text(&["receptor", "ligand"], &scene.regions) {
+            console.say(text);
+        }
+        if let Some(site) = scene.active_site() {
+            console.say(site_text(site));
+        }
+        if let Some(terms) = pose_terms_text(&pose_terms) {
+            console.say(format!(
+                "{terms}: `dock` ranks this pose of a pair by {pose_score:.3}"
+            ));
+        }
+        console.say(geometry_text(&geometry));
+        if !scored.reached {
+            console.warn(
+                "all modes are in and the error is above its mark: the grid is too coarse for the kernel; leave --spacing out",
+            );
+        }
+        let mut object = serde_json::to_value(&scored).map_err(Failure::other)?;
+        if let Some(object) = object.as_object_mut() {
+            let geometry = serde_json::to_value(geometry).map_err(Failure::other)?;
+            object.insert("geometry".to_owned(), geometry);
+            let site = serde_json::to_value(scene.active_site()).map_err(Failure::other)?;
+            object.insert("active_site".to_owned(), site);
+            let regions = serde_json::to_value(&scene.regions).map_err(Failure::other)?;
+            object.extend(regions.as_object().cloned().unwrap_or_default());
+            object.insert("pose".to_owned(), pose_numbers(pose));
+            for (term, value) in pose_terms.iter() {
+                object.insert(term.id.to_owned(), serde_json::json!(value));
+            }
+            object.insert("pose_score".to_owned(), serde_json::json!(pose_score));
+        }
+        console.result(&object)?;
+        Ok(())
+    }
+}
+
+/// Values of the pose terms that act; `None` if no term acts.
+fn pose_terms_text(values: &TermValues) -> Option<String> {
+    let acting = values
+        .iter()
+        .filter_map(|(term, value)| Some(format!("{} {:.3}", term.label, value?)));
+    let terms = acting.collect::<Vec<_>>().join(", ");
+    (!terms.is_empty()).then(|| format!("Pose terms: {terms}"))
+}
+
+/// The seven numbers of a pose.
+fn pose_numbers(pose: &Pose) -> serde_json::Value {
+    let [qw, qx, qy, qz] = pose.quaternion();
+    let [tx, ty, tz]: [f64; 3] = pose.translation.into();
+    serde_json::json!([qw, qx, qy, qz, tx, ty, tz])
+}
+
+/// The pose as two solids: buried surface and shared volume.
+fn geometry_text(geometry: &PoseGeometry) -> String {
+    format!(
+        "Buried surface {:.0} Å² ({:.0} of the receptor, {:.0} of the ligand); shared volume {:.1} Å³ of {:.0} and {:.0}: \
+         Tanimoto similarity {:.4}, {:.2}% of the smaller protrudes",
+        geometry.buried_area,
+        geometry.buried_area_receptor,
+        geometry.buried_area_ligand,
+        geometry.volume_shared,
+        geometry.volume_receptor,
+        geometry.volume_ligand,
+        geometry.shape_tanimoto,
+        100.0 * geometry.protrusion,
+    )
+}
+
+/// The exact score with its derivatives, and the table of modes.
+fn ladder_text(scored: &PoseScore, unit: &str) -> String {
+    let mut lines = vec![
+        [
+            "modes",
+            "value",
+            "error",
+            "rms",
+            "translation, µs",
+            "new rotation, µs",
+        ]
+        .map(str::to_owned)
+        .to_vec(),
+    ];
+    lines.extend(scored.rows.iter().map(|row| {
+        vec![
+            row.modes.to_string(),
+            format!("{:.3}", row.value),
+            format!("{:.2e}", row.error),
+            format!("{:.2e}", row.rms),
+            format!("{:.1}", 1e6 * row.seconds),
+            format!("{:.1}", 1e6 * row.seconds_new_rotation),
+        ]
+    }));
+    let vector = |v: [f64; 3]| format!("({:.2}, {:.2}, {:.2})", v[0], v[1], v[2]);
+    let sensitivity = match &scored.offset_sensitivity {
+        Some(sensitivity) => format!(
+            "Sensitivity to the offset, per {unit}: {:.2} of the score, {} of the slices; by differences of the exact sum {:.2}, {}\n",
+            sensitivity.score,
+            vector(sensitivity.slices),
+            sensitivity.exact_score,
+            vector(sensitivity.exact_slices),
+        ),
+        None => String::new(),
+    };
+    format!(
+        "Exact score {:.3} (without the low-pass {:.3}); best score at this rotation {:.3}\n\
+         Gradient: {} per {unit}, {} per radian about the ligand's centre\n\
+         {sensitivity}\
+         \n{}\n\
+         Modes: of {}, conjugates counted. Error: at this pose; rms: what the modes left out add over all translations.\n{}",
+        scored.exact,
+        scored.unfiltered,
+        scored.scale,
+        vector(scored.gradient.force),
+        vector(scored.gradient.torque),
+        report::align(&lines),
+        scored.modes_total,
+        if scored.reached {
+            format!(
+                "The last error is below {LADDER_ERROR} of the exact value or of the best score."
+            )
+        } else {
+            "The last error is what the grid leaves.".to_owned()
+        }
+    )
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_scoring::terms::pose::POSE_TERMS;
+
+    /// Every acting term stands in the line of terms once, by its label.
+    #[test]
+    fn the_line_of_pose_terms_is_that_of_the_registry() {
+        assert_eq!(pose_terms_text(&TermValues::default()), None);
+        let values = POSE_TERMS
+            .iter()
+            .fold(TermValues::default(), |values, term| {
+                values.with(term.id, 1.5)
+            });
+        let text = pose_terms_text(&values).unwrap();
+        let expected = POSE_TERMS
+            .iter()
+            .map(|term| format!("{} 1.500", term.label));
+        let found = text.strip_prefix("Pose terms: ").unwrap().split(", ");
+        assert!(found.eq(expected), "{text}");
+    }
+}

@@ -1,0 +1,286 @@
+//! `knotdock tradeoff`: what accuracy costs in time for a pair, setting by setting.
+
+use std::path::PathBuf;
+
+use crate::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
+use crate::report::Listed;
+use crate::tables::report::align;
+use crate::tradeoff::advice::advice;
+use crate::tradeoff::plot::plot;
+use crate::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
+use clap::Args;
+use knotdock::dock::pair::PairError;
+use knotdock::options::EngineChoice;
+use knotdock::options::definition::Scope;
+use knotdock::output::files::own_files::TRADEOFF;
+use knotdock::output::files::seal::REPORT;
+use knotdock::output::files::staging::Staging;
+use knotdock::progress::{Ended, Progress};
+use knotdock::threads;
+use serde_json::json;
+
+use crate::arguments::machine::{machine, settled};
+use crate::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
+use crate::inputs::native::NativeArguments;
+use crate::inputs::request::{Known, Request};
+use crate::messages::console::{Console, ProgressLine};
+use crate::messages::failure::Failure;
+use crate::messages::leftovers::warn_leftovers;
+
+/// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
+/// and with combinations.
+///
+/// Writes tradeoff.csv, tradeoff.json, tradeoff.svg and report.html into a directory, and says which setting to take.
+#[derive(Args, Debug)]
+pub struct TradeoffCommand {
+    /// The fixed molecule or mesh, as for `knotdock dock`.
+    #[arg(value_name = "RECEPTOR")]
+    receptor: String,
+    /// The molecule or mesh that is moved.
+    #[arg(value_name = "LIGAND")]
+    ligand: String,
+    /// Directory to write to [default: tradeoff_RECEPTOR_LIGAND].
+    #[arg(short, long, value_name = "DIR")]
+    output: Option<PathBuf>,
+    /// Replace the sweep in the directory, once the new one is done.
+    #[arg(long)]
+    force: bool,
+    #[arg(long, value_name = "NAMES", value_delimiter = ',', help = parameters_help())]
+    parameters: Option<Vec<Parameter>>,
+    #[command(flatten)]
+    options: OptionArguments<OfTradeoff>,
+    #[command(flatten)]
+    native: NativeArguments,
+}
+
+fn parameters_help() -> String {
+    let names: Vec<&str> = Parameter::all().into_iter().map(Parameter::name).collect();
+    let names = names.join(", ");
+    format!(
+        "Parameters to move, with commas between them, of {names} (several at once) [default: all]"
+    )
+}
+
+impl TradeoffCommand {
+    /// Sweeps.
+    pub fn run(self, console: Console) -> Result<(), Failure> {
+        let mut given = self.options.given()?;
+        given.options.machine = settled(&given.options.machine);
+        if given.options.search.symmetry.is_some() {
+            return Err(Failure::input("`knotdock tradeoff` does not dock rings")
+                .remedy("remove `symmetry` from the file of options"));
+        }
+        threads::on(given.options.machine.threads.count(), || {
+            self.sweep(given, console)
+        })?
+    }
+
+    /// Sweeps on the threads of the caller.
+    fn sweep(self, given: GivenOptions, console: Console) -> Result<(), Failure> {
+        let pair = [&self.receptor, &self.ligand];
+        let mut request = Request::read(pair, self.native.read()?, given)?;
+        check(&request, self.parameters.as_deref().unwrap_or_default())?;
+        let parameters = self.parameters.unwrap_or_else(Parameter::all);
+        let directory = self.output.unwrap_or_else(|| {
+            let [receptor, ligand] = request.bodies.labels();
+            PathBuf::from(format!("tradeoff_{receptor}_{ligand}"))
+        });
+        request.bodies.describe(request.arrangement(), console);
+        let known = request.known(console)?;
+        let first = request.plan(console)?;
+        console.say(format!("\nThe default: {}\n", first.plan));
+        let machine = machine(&first.plan);
+        let inputs = request.inputs(first.sampling.as_deref())?;
+        let opened = Staging::open(TRADEOFF, &directory, self.force)?;
+        warn_leftovers(&opened.leftovers, console);
+        let staging = opened.stage();
+        let progress = SweepConsole {
+            line: console.progress(),
+            console,
+        };
+        let tradeoff = sweep(
+            request.bodies.pair(),
+            first,
+            &request.options,
+            &parameters,
+            known.as_ref().and_then(Known::evaluator),
+            &progress,
+        )
+        .map_err(|error| failure(&error))?;
+        drop(progress);
+
+        let advice = advice(&tradeoff);
+        let svg = plot(&tradeoff).map_err(Failure::other)?;
+        staging.write("tradeoff.svg", |file| file.write_all(svg.as_bytes()))?;
+        staging.write("tradeoff.csv", |file| write_table(&tradeoff, file))?;
+        let record = TradeoffRecord::new(TradeoffParts {
+            inputs: &inputs,
+            options: &request.options,
+            tradeoff: &tradeoff,
+            advice: advice.as_ref(),
+            matching: known.as_ref().map(Known::entry).transpose()?,
+            files: staging.checksums()?,
+            machine,
+        })
+        .map_err(Failure::other)?;
+        staging.write("tradeoff.json", |file| record.write_to(file))?;
+        let name = directory.display().to_string();
+        let text = Listed::Tradeoff.report(&directory, staging.folder(), &name)?;
+        staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
+        opened.commit()?;
+
+        console.say(format!("\n{}", table(&tradeoff)));
+        if let Some(advice) = &advice {
+            console.say(format!("\n{}", advice.text));
+        }
+        let names = ["tradeoff.csv", "tradeoff.svg"];
+        let [csv, svg] = names.map(|name| directory.join(name).display().to_string());
+        console.say(format!("\nThe table is in {csv}, the picture in {svg}"));
+        console.result(&json!({
+            "directory": directory.display().to_string(),
+            "table": csv,
+            "picture": svg,
+            "tradeoff": serde_json::to_value(&record).map_err(Failure::other)?,
+        }))?;
+        Ok(())
+    }
+}
+
+/// Refuses a search on a graphics processor, and parameters without effect on the inputs.
+fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Failure> {
+    if request.options.search.engine == EngineChoice::Gpu {
+        let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
+        return Err(Failure::input(error).remedy("leave out --engine gpu"));
+    }
+    let other = if request.bodies.are_meshes() {
+        Scope::Molecules
+    } else {
+        Scope::Meshes
+    };
+    if let Some(idle) = parameters.iter().find(|one| one.scope() == other) {
+        let name = idle.name();
+        let error = format!("the option {name} has no effect on such inputs");
+        return Err(Failure::input(error).remedy("name other parameters"));
+    }
+    Ok(())
+}
+
+/// A failure of the default or the reference: of the request where it could not be planned.
+fn failure(error: &PairError) -> Failure {
+    use knotdock::error::SearchError;
+    let failure = match error {
+        PairError::Search(SearchError::Threads(_) | SearchError::NoPose) => Failure::other(error),
+        _ => Failure::input(error),
+    };
+    failure.remedy(error.remedy())
+}
+
+/// Settings by time, with what most want to know of them.
+fn table(tradeoff: &Tradeoff) -> String {
+    let mut header = vec![
+        "setting",
+        "wall s",
+        "CPU s",
+        "rank",
+        "error rms",
+        "worst",
+        "score apart",
+        "agreement",
+        "front",
+    ];
+    if tradeoff.with_native {
+        header.extend(["acceptable", "near-native"]);
+    }
+    let mut order: Vec<&Measured> = tradeoff.measured.iter().collect();
+    order.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
+    let rank = |rank: Option<usize>| rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
+    let mut lines = vec![header.into_iter().map(str::to_owned).collect()];
+    for run in order {
+        let front = match (run.front_error, run.front_agreement) {
+            (true, true) => "both",
+            (true, false) => "error",
+            (false, true) => "agreement",
+            (false, false) => "",
+        };
+        let mut line = vec![
+            run.setting.name.clone(),
+            format!("{:.2}", run.wall_seconds()),
+            run.cpu_seconds()
+                .map_or_else(|| "-".to_owned(), |seconds| format!("{seconds:.2}")),
+            run.rank.to_string(),
+            format!("{:.1e}", run.error.rms),
+            format!("{:.1e}", run.error.worst),
+            format!("{:.1e}", run.definition_rms),
+            format!("{:.2}", run.agreement),
+            front.to_owned(),
+        ];
+        if let Some(native) = run.native {
+            line.extend([
+                rank(native.first_acceptable),
+                rank(native.first_near_native),
+            ]);
+        }
+        lines.push(line);
+    }
+    align(&lines)
+}
+
+/// Lines on how far the sweep is, and the bar of the search that runs.
+struct SweepConsole<'a> {
+    line: ProgressLine<'a>,
+    console: Console<'a>,
+}
+
+impl Progress for SweepConsole<'_> {
+    fn stage(&self, name: &str, total: u64) {
+        self.line.stage(name, total);
+    }
+
+    fn advance(&self, by: u64) {
+        self.line.advance(by);
+    }
+
+    fn go_on(&self) -> Result<(), Ended> {
+        self.line.go_on()
+    }
+}
+
+impl SweepProgress for SweepConsole<'_> {
+    fn begins(&self, settings: usize, seconds: f64) {
+        self.line.clear();
+        self.console.say(format!(
+            "{settings} settings, in about {seconds:.0} s all together"
+        ));
+    }
+
+    fn runs(&self, number: usize, setting: &Setting) {
+        self.line.clear();
+        let text = match setting.parameter {
+            Parameter::Default => setting.name.clone(),
+            Parameter::Reference | Parameter::Repeat | Parameter::Combination => {
+                format!("{}: {}", setting.name, setting.arguments)
+            }
+            _ => setting.arguments.clone(),
+        };
+        self.console.say(format!("{number}: {text}"));
+    }
+
+    fn ran(&self, measured: &Measured) {
+        self.line.clear();
+        self.console.say(format!(
+            "   {}: {:.1} s, error {:.1e}, agreement {:.2}",
+            measured.setting.name,
+            measured.wall_seconds(),
+            measured.error.rms,
+            measured.agreement
+        ));
+    }
+
+    fn refused(&self, refused: &Refused) {
+        self.line.clear();
+        self.console.warn(format!(
+            "{} is left out: {}",
+            refused.setting, refused.reason
+        ));
+    }
+}

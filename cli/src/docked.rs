@@ -1,0 +1,307 @@
+//! A run that is docked: its table, and what is written of it.
+
+use std::path::Path;
+
+use crate::report::{MAX_ROWS, RunReport, Viewer};
+use crate::shards::WIDE_COLUMNS;
+use crate::tables::batch_results::RunSummary;
+use crate::tables::report::{BEST, best_clusters, firsts};
+use knotdock::dock::outcome::DockOutcome;
+use knotdock::dock::pair::PreparedPair;
+use knotdock::dock::run::dock_until;
+use knotdock::error::SearchError;
+use knotdock::output::files::added::Addition;
+use knotdock::output::files::own_files::RUN;
+use knotdock::output::files::seal::REPORT;
+use knotdock::output::files::staging::{Stage, Staging};
+use knotdock::output::files::viewers::{
+    CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol,
+};
+use knotdock::output::records::manifest::{Machine, Manifest, ManifestParts, Results};
+use knotdock::output::tables::fields::Column;
+use knotdock::output::tables::interface_shares::{INTERFACE, write_shares};
+use knotdock::output::tables::poses::PoseRow;
+use knotdock::output::tables::quality;
+use knotdock::output::tables::restraints;
+use knotdock::output::tables::run_table::{RunTable, pose_rows};
+use serde_json::{Value, json};
+
+use crate::arguments::machine::machine;
+use crate::docking::Docking;
+use crate::inputs::native::measure;
+use crate::inputs::request::Known;
+use crate::messages::brief::{cost_text, next_text};
+use crate::messages::console::Console;
+use crate::messages::dock::{
+    error_warning, few_rotations_warning, outcome_text, restraints_warning,
+};
+use crate::messages::failure::Failure;
+use crate::messages::leftovers::warn_leftovers;
+use crate::messages::timings::timings_text;
+
+impl Docking {
+    /// Docks, and writes the run; its JSON object. What ended commands left there is said on `notices`, for a batch says
+    /// that and nothing else of its pairs.
+    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
+        let staging = Staging::open(RUN, &self.directory, self.force)?;
+        warn_leftovers(&staging.leftovers, notices);
+        self.dock(console)?.save(staging, console)
+    }
+
+    /// Docks, and writes nothing.
+    pub fn dock(mut self, console: Console) -> Result<Docked, Failure> {
+        let progress = console.progress();
+        let PreparedPair { plan, points, .. } = &self.prepared;
+        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress).map_err(
+            |error| match error {
+                SearchError::NoAllowedPose { .. } | SearchError::AllInMembrane => {
+                    Failure::input(&error).remedy(error.remedy())
+                }
+                SearchError::Ended(_) => Failure::of_program(&error).remedy(error.remedy()),
+                error => Failure::other(&error).remedy(error.remedy()),
+            },
+        )?;
+        // The record says where the search stopped, so that it can be repeated.
+        self.request.options.stopped = outcome.stopped;
+        Ok(Docked::new(self, outcome))
+    }
+}
+
+/// A run that is docked and not written.
+pub struct Docked {
+    docking: Docking,
+    outcome: DockOutcome,
+    /// Columns that restraints and a known complex add to the table.
+    quality: Vec<Column>,
+    /// The same as one of the columns that any run may have each.
+    wide: Vec<Column>,
+}
+
+impl Docked {
+    /// What a docking came to.
+    pub fn new(docking: Docking, outcome: DockOutcome) -> Self {
+        let mut quality: Vec<Column> = restraints::met(&docking.prepared.plan, &outcome.poses)
+            .into_iter()
+            .collect();
+        if let Some(known) = &docking.known {
+            let rows = pose_rows(&outcome.poses);
+            let measured = known.evaluator().map(|evaluator| measure(evaluator, &rows));
+            let measured = measured.unwrap_or_default().into_iter();
+            let mut found: Vec<_> = measured.map(|(quality, _)| Some(quality)).collect();
+            found.resize(rows.len(), None);
+            quality.extend(quality::columns(&found));
+        }
+        let wide = WIDE_COLUMNS.map(|name| {
+            let found = quality.iter().find(|column| column.name == name);
+            found.cloned().unwrap_or_else(|| Column {
+                name: name.to_owned(),
+                fields: Vec::new(),
+            })
+        });
+        Self {
+            docking,
+            outcome,
+            quality,
+            wide: wide.into(),
+        }
+    }
+
+    /// Its table of poses.
+    pub fn table(&self) -> RunTable<'_> {
+        let docking = &self.docking;
+        let diagnostics = docking.request.options.output.diagnostics;
+        let columns = (docking.prepared.plan.sharp(), diagnostics);
+        RunTable::new(&self.outcome.poses, columns, &self.quality)
+    }
+
+    /// Its table of poses with the columns that any run may have.
+    pub fn wide_table(&self) -> RunTable<'_> {
+        RunTable::wide(&self.outcome.poses, &self.wide)
+    }
+
+    /// What a batch reports of it.
+    pub fn summary(&self) -> RunSummary {
+        let table = self.table();
+        let counts = [self.outcome.poses_kept, self.outcome.clusters];
+        let counts = counts.map(|count| u64::try_from(count).ok());
+        RunSummary::of_rows(counts, table.objects(0..self.outcome.poses.len()))
+    }
+
+    /// Writes the complexes of the best poses into a folder, which may hold the same ones.
+    pub fn export_top(&self, folder: &Path) -> Result<(), Failure> {
+        let request = &self.docking.request;
+        let rows = self.rows();
+        let top = rows
+            .get(..request.options.output.write_top)
+            .unwrap_or(&rows);
+        let addition = Addition::open(folder, None)?;
+        let place = (addition.stage().folder(), None);
+        request.bodies.write(top, request.arrangement(), place)?;
+        Ok(addition.place(false)?)
+    }
+
+    /// Rank and pose of each row.
+    fn rows(&self) -> Vec<PoseRow> {
+        pose_rows(&self.outcome.poses)
+    }
+
+    /// Writes the run; its JSON object.
+    pub fn save(&self, staging: Staging, console: Console) -> Result<Value, Failure> {
+        let written = self.write(staging.stage())?;
+        staging.commit()?;
+        self.report(console);
+        let directory = &self.docking.directory;
+        let top = directory.join("top");
+        let complexes = written.complexes.iter().map(|name| top.join(name));
+        Ok(json!({
+            "directory": directory.display().to_string(),
+            "poses": directory.join("poses.csv").display().to_string(),
+            "report": written.report.then(|| directory.join(REPORT).display().to_string()),
+            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "best": written.best,
+            "run": written.manifest,
+        }))
+    }
+
+    /// Writes the table, the complexes and the record of a run into its staging folder.
+    fn write(&self, staging: &Stage) -> Result<Written, Failure> {
+        let (docking, outcome) = (&self.docking, &self.outcome);
+        let Docking {
+            request,
+            known,
+            prepared,
+            ..
+        } = docking;
+        let (output, plan) = (&request.options.output, &prepared.plan);
+        let rows = self.rows();
+        if !plan.restraints.is_empty() {
+            staging.write("restraints.csv", |file| {
+                restraints::write_to(plan, &outcome.poses, file)
+            })?;
+        }
+        let table = self.table();
+        staging.write("poses.csv", |file| table.write_to(file))?;
+        let best = table.objects(firsts(&outcome.poses).into_iter().take(BEST));
+        let top = rows.get(..output.write_top).unwrap_or(&rows);
+        let written = request.bodies.write(
+            top,
+            request.arrangement(),
+            (&staging.folder().join("top"), None),
+        )?;
+        if let Some(chains) = &written.chains {
+            let names = written.names.iter().zip(top);
+            let viewed: Vec<ViewedComplex> = names
+                .map(|(name, row)| ViewedComplex::new(row.rank, name, chains))
+                .collect();
+            write_scripts(staging, &viewed)?;
+        }
+        let shown = table.first(MAX_ROWS);
+        let contacts = request.bodies.contacts(&shown, &request.options);
+        if let Some(contacts) = &contacts {
+            let [receptor, ligand] = contacts.shares();
+            let sides = [("receptor", &receptor[..]), ("ligand", &ligand[..])];
+            staging.write(INTERFACE, |file| write_shares(sides, file))?;
+        }
+        let inputs = request.inputs(prepared.sampling.as_deref())?;
+        let manifest = Manifest::new(ManifestParts {
+            inputs: &inputs,
+            options: &request.options,
+            plan,
+            outcome,
+            results: Results {
+                poses: outcome.poses_kept,
+                clusters: outcome.clusters,
+                rows: outcome.poses.len(),
+                rotations: outcome.searched,
+            },
+            files: staging.checksums()?,
+            chains: written.chains.as_ref(),
+            matching: known.as_ref().map(Known::entry).transpose()?,
+            timing: docking.clock.timing(outcome),
+            machine: Machine {
+                chosen: docking.chosen.clone(),
+                adapter: outcome.adapter.clone(),
+                ..machine(plan)
+            },
+        })
+        .map_err(Failure::other)?;
+        staging.write("run.json", |file| manifest.write_to(file))?;
+        let record = serde_json::to_value(&manifest).map_err(Failure::other)?;
+        if !output.no_report {
+            let report = RunReport {
+                record: &record,
+                options: &request.options,
+                table: &shown,
+                bodies: request.bodies.shown(contacts.as_ref()),
+                directory: &docking.shown.display().to_string(),
+            };
+            let text = report.text(Viewer::embedded());
+            staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
+        }
+        Ok(Written {
+            manifest: record,
+            report: !output.no_report,
+            complexes: written.names,
+            best,
+        })
+    }
+
+    /// Reports the run: the best clusters, what they cost, and what to do next; before them, where the console wants
+    /// details, effects, errors and times.
+    fn report(&self, console: Console) {
+        let (docking, outcome) = (&self.docking, &self.outcome);
+        let plan = &docking.prepared.plan;
+        console.detail(format!("\n{}", outcome_text(plan, outcome)));
+        console.detail(format!("\n{}", timings_text(outcome)));
+        if let Some(chosen) = &docking.chosen {
+            let stages = outcome.timing.iter();
+            console.detail(format!(
+                "The search was expected to take {:.1} s, and took {:.1} s",
+                chosen.predicted_seconds,
+                stages.map(|stage| stage.wall_seconds).sum::<f64>()
+            ));
+        }
+        console.say(format!(
+            "\n{}\n",
+            best_clusters(&outcome.poses, &self.quality)
+        ));
+        if let Some(warning) = error_warning(plan, outcome) {
+            console.warn(warning);
+        }
+        if let Some(warning) = restraints_warning(plan, &outcome.poses) {
+            console.warn(warning);
+        }
+        if let Some(warning) = few_rotations_warning(outcome, docking.deadline.is_some()) {
+            console.warn(warning);
+        }
+        console.say(cost_text(plan, outcome, docking.clock.seconds()));
+        let output = &docking.request.options.output;
+        console.say(next_text(
+            &docking.directory,
+            outcome,
+            output.write_top,
+            !output.no_report,
+        ));
+    }
+}
+
+/// Writes the scripts that show complexes in other programs, if there are any.
+pub fn write_scripts(staging: &Stage, complexes: &[ViewedComplex]) -> Result<(), Failure> {
+    if !complexes.is_empty() {
+        staging.write(PYMOL, |file| write_pymol(file, complexes))?;
+        staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;
+    }
+    Ok(())
+}
+
+/// What a run wrote.
+struct Written {
+    /// Rows of the best clusters, as JSON.
+    best: Vec<Value>,
+    /// Whether there is a report.
+    report: bool,
+    /// Names of the complexes in `top/`.
+    complexes: Vec<String>,
+    /// run.json.
+    manifest: Value,
+}

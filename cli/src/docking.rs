@@ -1,0 +1,233 @@
+//! A docking run: planned, described, carried out and written.
+
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
+
+use crate::records::recorded_run::RecordedRun;
+use crate::tradeoff::choice::{Wanted, choose, deadline};
+use crate::tradeoff::cost_model::{CostModel, Workload};
+use knotdock::dock::memory::process;
+use knotdock::dock::outcome::DockOutcome;
+use knotdock::dock::pair::{PreparedPair, Preparer};
+use knotdock::dock::plan::DockPlan;
+use knotdock::options::{Precision, SharpChoice};
+use knotdock::output::files::staging::put_back;
+use knotdock::output::records::manifest::Chosen;
+use knotdock::output::records::manifest::{EffectTime, Timing};
+use knotdock::search::deadline::Deadline;
+
+use crate::inputs::native::NativeFiles;
+use crate::inputs::request::{Known, Request};
+use crate::messages::brief::{expected_text, score_text};
+use crate::messages::console::Console;
+use crate::messages::dock::{assumed, regions_text};
+use crate::messages::failure::Failure;
+
+/// A run that is ready to go.
+pub struct Docking {
+    pub(super) request: Request,
+    pub(super) directory: PathBuf,
+    /// What its report calls the directory.
+    pub(super) shown: PathBuf,
+    /// Whether another run there is replaced.
+    pub(super) force: bool,
+    pub(super) known: Option<Known>,
+    pub(super) prepared: PreparedPair,
+    pub(super) chosen: Option<Chosen>,
+    /// Where the run has a budget.
+    pub(super) deadline: Option<Deadline>,
+    pub(super) clock: Clock,
+}
+
+impl Docking {
+    /// Plans the requested run. It is written into `directory`, and replaces a run there only if `force` is true.
+    pub fn prepare(
+        mut request: Request,
+        wanted: Wanted,
+        (directory, force): (PathBuf, bool),
+        clock: Clock,
+        console: Console,
+    ) -> Result<Self, Failure> {
+        let arrangement = request.arrangement();
+        if !arrangement.is_ring() {
+            request.bodies.note_shared_chains();
+        }
+        request.bodies.describe(arrangement, console);
+        let known = request.known(console)?;
+        let (prepared, chosen, deadline) = if wanted == Wanted::default() {
+            (request.plan(console)?, None, None)
+        } else {
+            let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
+            let end = wanted
+                .budget
+                .and_then(|budget| Duration::try_from_secs_f64(budget).ok())
+                .and_then(|budget| clock.monotonic.checked_add(budget));
+            let deadline = end.map(|end| deadline(&prepared.plan, end));
+            (prepared, Some(chosen), deadline)
+        };
+        let plan = &prepared.plan;
+        let sides = arrangement.sides();
+        console.detail(format!("\n{plan}"));
+        for (side, count) in sides.iter().zip(plan.unresolved()) {
+            if count > 0 {
+                console.warn(format!(
+                    "{count} balls of the {side} are too small for a resolution of {} {}: less than a tenth of their overlap is left",
+                    request.options.kernel.resolution, plan.unit
+                ));
+            }
+        }
+        for text in regions_text(sides, &plan.regions) {
+            console.detail(text);
+        }
+        for (side, labels) in sides.iter().zip(&plan.labels) {
+            if let Some(text) = assumed(side, labels, plan) {
+                console.detail(text);
+            }
+        }
+        console.say(score_text(plan, sides));
+        let seconds = seconds_of(plan);
+        console.say(expected_text(
+            plan,
+            seconds,
+            chosen.as_ref(),
+            request.is_angle,
+        ));
+        Ok(Self {
+            request,
+            shown: directory.clone(),
+            directory,
+            force,
+            known,
+            prepared,
+            chosen,
+            deadline,
+            clock,
+        })
+    }
+
+    /// Memory that the run is expected to take, in bytes.
+    pub fn memory_bytes(&self) -> u64 {
+        self.prepared.plan.memory_bytes()
+    }
+
+    /// Seconds that the search is expected to take on this machine.
+    pub fn expected_seconds(&self) -> f64 {
+        seconds_of(&self.prepared.plan)
+    }
+
+    /// The directory of the run, if it holds another run that is not to be replaced.
+    pub fn in_the_way(&self) -> Option<&Path> {
+        let run = !self.force && self.directory.join("run.json").exists();
+        run.then_some(self.directory.as_path())
+    }
+
+    /// Whether the directory holds this very run already: of this program, with inputs of the same content and the
+    /// same options.
+    pub fn is_done(&self) -> bool {
+        if put_back(&self.directory).is_err() {
+            return false;
+        }
+        let Ok(run) = RecordedRun::read(&self.directory.join("run.json")) else {
+            return false;
+        };
+        let native = self.request.native.as_ref().map(NativeFiles::record);
+        let mut options = self.request.options.clone();
+        if self.deadline.is_some() {
+            // Where that run stopped is what this one's time would say.
+            options.stopped = run.options.stopped;
+        }
+        let inputs = self.request.bodies.records();
+        self.directory.join("poses.csv").is_file()
+            && run.is_of_this_program()
+            && run.is_same_request(inputs, native.as_ref(), &options)
+    }
+}
+
+/// Seconds that a search is expected to take.
+fn seconds_of(plan: &DockPlan) -> f64 {
+    CostModel::BUILT_IN.seconds(&Workload::of(plan), plan.rotations, plan.in_flight())
+}
+
+/// The refusal of a directory that holds something else, which `force` would replace.
+pub fn held_by_another(directory: &Path, force: &str) -> Failure {
+    Failure::input(
+        "the directory holds another run: of other inputs or options, by another version, or unfinished",
+    )
+    .at(directory)
+    .remedy(format!("pass {force} to replace it, or choose another directory with -o"))
+}
+
+/// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.
+fn plan_within(
+    wanted: Wanted,
+    request: &mut Request,
+    console: Console,
+) -> Result<(PreparedPair, Chosen), Failure> {
+    // Nothing is known of the time that sharp fits take before there are poses.
+    if wanted.budget.is_some() && request.options.ranking.sharp == SharpChoice::Auto {
+        request.options.ranking.sharp = SharpChoice::Off;
+    }
+    let rotations = request.options.search.rotations;
+    // A first plan fills in the lengths of meshes; its rotations are not used.
+    request.options.search.rotations = 4;
+    let first = request.plan(console)?;
+    request.options.search.rotations = rotations;
+    let options = &mut request.options;
+    let mut preparer = Preparer::new(request.bodies.pair(), options, &first);
+    let chosen = choose(wanted, options, &mut preparer)
+        .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+    let prepared = preparer
+        .prepare(options)
+        .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+    let error = chosen
+        .predicted_error
+        .map(|error| format!(" and an error of {error:.1e} of the best score"));
+    console.detail(format!(
+        "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected are {:.1} s{}",
+        options.search.rotations,
+        options.kernel.tolerance,
+        match options.search.precision {
+            Precision::Single => "",
+            Precision::Double => " --precision double",
+        },
+        prepared.plan.spacing,
+        chosen.predicted_seconds,
+        error.unwrap_or_default()
+    ));
+    Ok((prepared, chosen))
+}
+
+/// When the run began.
+pub struct Clock {
+    wall: SystemTime,
+    monotonic: Instant,
+}
+
+impl Clock {
+    /// Now.
+    pub fn start() -> Self {
+        Self {
+            wall: SystemTime::now(),
+            monotonic: Instant::now(),
+        }
+    }
+
+    /// Seconds since then.
+    pub fn seconds(&self) -> f64 {
+        self.monotonic.elapsed().as_secs_f64()
+    }
+
+    pub(super) fn timing(&self, outcome: &DockOutcome) -> Timing {
+        Timing {
+            // A clock set before 1970 says nothing.
+            started_unix_seconds: self
+                .wall
+                .duration_since(UNIX_EPOCH)
+                .map_or(0, |since| since.as_secs()),
+            wall_seconds: self.seconds(),
+            stages: outcome.timing.clone(),
+            effects: EffectTime::of(&outcome.effects),
+            peak_memory_bytes: process::peak(),
+        }
+    }
+}

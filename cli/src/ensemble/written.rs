@@ -1,0 +1,164 @@
+//! What the runs of an ensemble come to together: the joint table, complexes, the record, and the report.
+
+use std::path::Path;
+
+use crate::records::ensemble_record::{
+    EnsembleRecord, EnsembleResults, EnsembleTiming, MemberRecord, RECORD, SCHEMA,
+};
+use crate::report::Listed;
+use crate::tables::report::{BEST, best_rows, counted};
+use knotdock::ensemble::table::{DockedMember, JointTable};
+use knotdock::output::files::own_files::MEMBERS;
+use knotdock::output::files::seal::REPORT;
+use knotdock::output::files::staging::Stage;
+use knotdock::output::files::viewers::ViewedComplex;
+use knotdock::output::files::whole_file::to_json;
+use knotdock::output::records::program::Program;
+use knotdock::output::tables::poses::PoseRow;
+use knotdock::pose_space::arrangement::Arrangement;
+use serde_json::{Value, json};
+
+use crate::docked::write_scripts;
+use crate::ensemble::laid::Laid;
+use crate::ensemble::place::Place;
+use crate::ensemble::run::Ensemble;
+use crate::inputs::bodies::Bodies;
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+
+impl Ensemble {
+    /// Writes the joint table, complexes and the record, and reports them; the JSON object. `docked` are the members,
+    /// the poses that they kept and how many were there already.
+    pub(super) fn write(
+        &self,
+        joint: &JointTable,
+        (docked, poses, kept): (&[DockedMember], u64, usize),
+        place: Place,
+        console: Console,
+    ) -> Result<Value, Failure> {
+        let staging = place.stage();
+        staging.write("poses.csv", |file| joint.table.write_to(file))?;
+        let viewed = self.write_top(joint, &staging.folder().join("top"))?;
+        write_scripts(staging, &viewed)?;
+        let results = EnsembleResults {
+            rows: joint.table.rows().len(),
+            clusters: joint.clusters,
+            poses,
+        };
+        let record = self.record(docked, results, staging, kept)?;
+        let record = serde_json::to_value(&record).map_err(Failure::other)?;
+        staging.write(RECORD, |file| to_json(file, &record))?;
+        if !self.given.options.output.no_report {
+            let name = self.directory.display().to_string();
+            let text = Listed::Ensemble.report(&self.directory, staging.folder(), &name)?;
+            staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
+        }
+        place.commit()?;
+        self.report(joint, console);
+        let top = self.directory.join("top");
+        let complexes = viewed
+            .iter()
+            .map(|complex| top.join(&complex.file).display().to_string());
+        Ok(json!({
+            "directory": self.directory.display().to_string(),
+            "poses": self.directory.join("poses.csv").display().to_string(),
+            "complexes": complexes.collect::<Vec<_>>(),
+            "best": joint.table.objects(joint.firsts().into_iter().take(BEST)),
+            "ensemble": record,
+        }))
+    }
+
+    /// Writes the complexes of the first ranks, each of its member's conformations, in the order of the ranks.
+    fn write_top(&self, joint: &JointTable, folder: &Path) -> Result<Vec<ViewedComplex>, Failure> {
+        let rows = joint.table.rows();
+        let count = self.given.options.output.write_top.min(rows.len());
+        let mut viewed = Vec::new();
+        for (index, member) in self.members().into_iter().enumerate() {
+            let own = (0..count).filter(|&row| joint.members[row] == index);
+            let own: Vec<PoseRow> = own.map(|row| rows[row]).collect();
+            if own.is_empty() {
+                continue;
+            }
+            let specs = self.laid(member).map(|laid| laid.spec.clone());
+            let bodies = Bodies::of(specs, &self.given.options)?;
+            let written = bodies.write(&own, Arrangement::Pair, (folder, None))?;
+            let chains = written.chains.unwrap_or_default();
+            let names = own.iter().zip(&written.names);
+            viewed.extend(names.map(|(row, name)| ViewedComplex::new(row.rank, name, &chains)));
+        }
+        viewed.sort_by_key(|complex| complex.rank);
+        Ok(viewed)
+    }
+
+    /// ensemble.json.
+    fn record<'a>(
+        &'a self,
+        docked: &[DockedMember],
+        results: EnsembleResults,
+        staging: &Stage,
+        members_kept: usize,
+    ) -> Result<EnsembleRecord<'a>, Failure> {
+        let member = |docked: &DockedMember| {
+            let best = docked
+                .table
+                .objects([0])
+                .first()
+                .and_then(|row| row["pose_score"].as_f64());
+            let [receptor_model, ligand_model] = docked.conformations.clone();
+            MemberRecord {
+                name: docked.name.clone(),
+                receptor_model,
+                ligand_model,
+                rows: docked.table.rows().len(),
+                best_pose_score: best,
+            }
+        };
+        let [receptor, ligand] = self
+            .laid
+            .sides
+            .each_ref()
+            .map(|side| side.iter().map(Laid::record).collect::<Vec<_>>());
+        Ok(EnsembleRecord {
+            schema: SCHEMA,
+            program: Program::this(),
+            receptor,
+            ligand,
+            options: &self.given.options,
+            members: docked.iter().map(member).collect(),
+            results,
+            files: staging.checksums()?,
+            timing: EnsembleTiming {
+                wall_seconds: self.clock.seconds(),
+                expected_seconds: self.expected_seconds,
+                members_kept,
+            },
+            command: std::env::args_os()
+                .map(|word| word.to_string_lossy().into_owned())
+                .collect(),
+        })
+    }
+
+    /// Reports the joint ranking.
+    fn report(&self, joint: &JointTable, console: Console) {
+        console.say(format!(
+            "\n{}\n\nAll {} together (rec and lig are the conformations): {} in {:.1} s",
+            best_rows(&joint.table, joint.firsts()),
+            counted(self.members().len(), "run"),
+            counted(joint.clusters, "cluster"),
+            self.clock.seconds(),
+        ));
+        let directory = self.directory.display();
+        console.say(format!(
+            "Effects, errors and times of each are in {directory}/{MEMBERS}/*/run.json"
+        ));
+        console.say(format!(
+            "{} in {directory}/poses.csv",
+            counted(joint.table.rows().len(), "row"),
+        ));
+        if !self.given.options.output.no_report {
+            console.say(format!(
+                "  open {directory}/{REPORT}  look at them in a browser"
+            ));
+        }
+    }
+}

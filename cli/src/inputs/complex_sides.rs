@@ -1,0 +1,282 @@
+//! The two sides of a complex file: as named, as knotdock wrote them, or the two chains that there are.
+
+use std::path::{Path, PathBuf};
+
+use knotdock_structures::molecule::{
+    InputSpec, ModelChoice, Molecule, ReadOptions, file_bytes, model_count, read_bytes,
+};
+
+use rayon::prelude::*;
+
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+
+/// A model of a complex file as two molecules where they stand.
+pub struct ComplexSides {
+    /// The file.
+    pub path: PathBuf,
+    /// Place of the model in the file, from 1.
+    pub model: usize,
+    /// Chains of each side, with commas between them.
+    pub chains: [String; 2],
+    /// The sides.
+    pub molecules: [Molecule; 2],
+}
+
+impl ComplexSides {
+    /// Reads a model of a file, with the chains of both sides or without.
+    ///
+    /// # Errors
+    /// [`Failure`] for a file that cannot be read, and for one that does not say which chains belong together.
+    fn read(
+        file: &ModelOfFile,
+        chains: Option<&[String; 2]>,
+        options: &ReadOptions,
+    ) -> Result<Self, Failure> {
+        let whole = InputSpec {
+            model: file.one_of_several.then_some(file.model),
+            ..InputSpec::whole(file.path)
+        };
+        let chains = match chains {
+            Some(chains) => chains.clone(),
+            None => match written_sides(&String::from_utf8_lossy(file.bytes)) {
+                Some(chains) => chains,
+                None => two_chains(&whole, file.bytes.to_vec(), options)?,
+            },
+        };
+        let side = |names: &String| -> Result<Molecule, Failure> {
+            let spec = InputSpec {
+                chains: Some(names.split(',').map(str::to_owned).collect()),
+                ..whole.clone()
+            };
+            Ok(read_bytes(&spec, file.bytes.to_vec(), options)?)
+        };
+        let molecules = [side(&chains[0])?, side(&chains[1])?];
+        Ok(Self {
+            path: whole.path,
+            model: file.model,
+            chains,
+            molecules,
+        })
+    }
+
+    /// Warnings of the reader on both sides, each once.
+    fn warnings(&self) -> Vec<String> {
+        let mut warnings: Vec<String> = Vec::new();
+        for warning in self.molecules.iter().flat_map(|one| &one.report.warnings) {
+            let warning = format!("{}: {warning}", self.path.display());
+            if !warnings.contains(&warning) {
+                warnings.push(warning);
+            }
+        }
+        warnings
+    }
+}
+
+/// A model of a file.
+struct ModelOfFile<'a> {
+    path: &'a Path,
+    bytes: &'a [u8],
+    /// Its place in the file, from 1.
+    model: usize,
+    /// Whether it is read by that place; otherwise the options of reading say what is read.
+    one_of_several: bool,
+}
+
+/// A file with its bytes, unpacked once, and the models that are read of it one by one.
+struct ModelFile {
+    path: PathBuf,
+    bytes: Vec<u8>,
+    models: Vec<usize>,
+}
+
+impl ModelFile {
+    /// Reads a file. Of several models every one counts, unless the options of reading choose.
+    fn read(file: &str, options: &ReadOptions) -> Result<Self, Failure> {
+        let path = PathBuf::from(file);
+        let bytes = file_bytes(&path)?;
+        let models = match options.model {
+            choice if choice == ModelChoice::default() => {
+                (1..=model_count(&path, bytes.clone())?).collect()
+            }
+            ModelChoice::Number(model) => vec![model],
+            ModelChoice::All => vec![1],
+        };
+        Ok(Self {
+            path,
+            bytes,
+            models,
+        })
+    }
+}
+
+/// The files that words name, and the chains of both sides where they stand behind them.
+///
+/// # Errors
+/// [`Failure`] where the words name no file, or the chains of one side or of more than two.
+pub fn files_and_chains<'a>(
+    words: &'a [String],
+    command: &str,
+) -> Result<(&'a [String], Option<[String; 2]>), Failure> {
+    let last = words.iter().rev();
+    let named = last.take_while(|word| is_chains(word)).count();
+    let (files, chains) = words.split_at(words.len() - named);
+    let chains = match chains {
+        [] => None,
+        [first, second] => Some([first.clone(), second.clone()]),
+        others => {
+            let sides = match others.len() {
+                1 => "one side".to_owned(),
+                count => format!("{count} sides"),
+            };
+            return Err(Failure::input(format!(
+                "chains of {sides} are given, and a complex has two sides"
+            ))
+            .remedy(format!(
+                "name the chains of both sides behind the files, as in `knotdock {command} x.pdb H,L A`"
+            )));
+        }
+    };
+    if files.is_empty() {
+        return Err(Failure::input("no complex is given")
+            .remedy("give a file; its name needs a point or a folder, as in ./complex"));
+    }
+    Ok((files, chains))
+}
+
+/// What is made of each model of each file, in their order, and the exit code. Warnings of the reader are shown. A model
+/// of which nothing can be made is reported and costs no other.
+///
+/// # Errors
+/// The [`Failure`] of a model that is the only one.
+pub fn for_each_model<T: Send>(
+    (files, chains): (&[String], Option<&[String; 2]>),
+    options: &ReadOptions,
+    console: Console,
+    make: impl Fn(&str, ComplexSides) -> Result<T, Failure> + Sync,
+) -> Result<(Vec<T>, u8), Failure> {
+    type Made<T> = (Vec<String>, Result<T, Failure>);
+    let of_model = |name: &str, file: &ModelFile, model: usize| -> Made<T> {
+        let one_of_several = file.models.len() > 1;
+        let place = ModelOfFile {
+            path: &file.path,
+            bytes: &file.bytes,
+            model,
+            one_of_several,
+        };
+        let (warnings, made) = match ComplexSides::read(&place, chains, options) {
+            Ok(sides) => (sides.warnings(), make(name, sides)),
+            Err(failure) => (Vec::new(), Err(failure)),
+        };
+        let made = made.map_err(|failure| match one_of_several {
+            true => failure.in_model(model),
+            false => failure,
+        });
+        (warnings, made)
+    };
+    let of_file = |name: &String| -> Vec<Made<T>> {
+        match ModelFile::read(name, options) {
+            Ok(file) => {
+                let models = file.models.par_iter();
+                models.map(|&model| of_model(name, &file, model)).collect()
+            }
+            Err(failure) => vec![(Vec::new(), Err(failure))],
+        }
+    };
+    let made: Vec<Vec<Made<T>>> = files.par_iter().map(of_file).collect();
+    let is_only = made.iter().map(Vec::len).sum::<usize>() == 1;
+    let (mut rows, mut code, mut warned) = (Vec::new(), 0, Vec::new());
+    for (warnings, one) in made.into_iter().flatten() {
+        for warning in warnings {
+            if !warned.contains(&warning) {
+                console.warn(&warning);
+                warned.push(warning);
+            }
+        }
+        match one {
+            Ok(row) => rows.push(row),
+            Err(failure) if is_only => return Err(failure),
+            Err(failure) => {
+                console.error(failure.text());
+                code = code.max(failure.exit_code());
+            }
+        }
+    }
+    Ok((rows, code))
+}
+
+/// Whether a word names chains and no file: it has neither a point nor a folder.
+fn is_chains(word: &str) -> bool {
+    !word.contains(['.', '/', '\\'])
+}
+
+/// The sides that the remarks of a complex of knotdock name: `chain B is ligand chain I`. Of a ring all copies but the
+/// first are the second side.
+fn written_sides(text: &str) -> Option<[String; 2]> {
+    let mut sides = [Vec::new(), Vec::new()];
+    for line in text.lines() {
+        let line = line.strip_prefix("REMARK  99 ").unwrap_or(line).trim();
+        let Some((name, rest)) = line
+            .strip_prefix("chain ")
+            .and_then(|rest| rest.split_once(" is "))
+        else {
+            continue;
+        };
+        if rest.starts_with("receptor chain ") {
+            sides[0].push(name);
+        } else if rest.starts_with("ligand chain ") || rest.starts_with("copy ") {
+            sides[1].push(name);
+        }
+    }
+    let is_whole = sides.iter().all(|side| !side.is_empty());
+    is_whole.then(|| sides.map(|side| side.join(",")))
+}
+
+/// The chains of a file that has two.
+fn two_chains(
+    whole: &InputSpec,
+    bytes: Vec<u8>,
+    options: &ReadOptions,
+) -> Result<[String; 2], Failure> {
+    let molecule = read_bytes(whole, bytes, options)?;
+    let chains = molecule.report.chains.iter();
+    let names: Vec<String> = chains
+        .map(|chain| match chain.name.as_str() {
+            "" => "_".to_owned(),
+            name => name.to_owned(),
+        })
+        .collect();
+    <[String; 2]>::try_from(names).map_err(|names| {
+        Failure::input(format!(
+            "it is not known which chains belong together; the file has {}",
+            names.join(", ")
+        ))
+        .at(&whole.path)
+        .remedy("name the chains of both sides behind the files, as in `knotdock interface x.pdb H,L A`")
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn complexes_of_knotdock_name_their_sides() {
+        let pdb = "REMARK  99 knotdock 0.1.0, rank 1\n\
+                   REMARK  99 chain A is receptor chain A\nREMARK  99 chain H is ligand chain H\n\
+                   REMARK  99 chain L is ligand chain L\nATOM\n";
+        assert_eq!(written_sides(pdb), Some(["A".into(), "H,L".into()]));
+        let cif = ";\nchain A is receptor chain A\nchain B is ligand chain A\nchain C is copy 3 chain A\n;\n";
+        assert_eq!(written_sides(cif), Some(["A".into(), "B,C".into()]));
+        assert_eq!(
+            written_sides("REMARK  99 chain A is receptor chain A\n"),
+            None
+        );
+    }
+
+    #[test]
+    fn words_without_a_point_are_chains() {
+        assert!(is_chains("H,L") && is_chains("A"));
+        assert!(!is_chains("x.pdb") && !is_chains("./complex"));
+    }
+}

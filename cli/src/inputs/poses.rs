@@ -1,0 +1,176 @@
+//! Poses named on the command line: one as seven numbers, or a table of many.
+
+use std::io::{self, Read};
+use std::path::{Path, PathBuf};
+
+use crate::tables::pose_list::read_list;
+use clap::Args;
+use knotdock::bounded_read::{MAX_POSES, read_bounded};
+use knotdock::output::tables::poses_reader::PoseTableError;
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::LARGEST_LENGTH;
+
+use crate::messages::failure::Failure;
+
+/// How far from 1 the length of a quaternion may be: what digits left off explain.
+const UNIT_LENGTH: f64 = 1e-3;
+
+/// Poses of the moved solid.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Poses")]
+pub struct PoseArguments {
+    /// One pose: a unit quaternion and a translation. A point at x goes to R x + t [default: as the files stand].
+    #[arg(
+        long,
+        value_name = "QW,QX,QY,QZ,TX,TY,TZ",
+        allow_hyphen_values = true,
+        conflicts_with = "poses"
+    )]
+    pub pose: Option<String>,
+    /// Many poses: a CSV file with columns qw, qx, qy, qz, tx, ty, tz, such as a poses.csv, or - for standard input.
+    #[arg(long, value_name = "FILE")]
+    pub poses: Option<PathBuf>,
+}
+
+impl PoseArguments {
+    /// The poses, and the file that they came from. Neither option means the one pose of the files as they stand.
+    pub fn read(&self) -> Result<Vec<Pose>, Failure> {
+        match (&self.pose, &self.poses) {
+            (Some(text), _) => Ok(vec![pose(text)?]),
+            (None, Some(path)) => pose_file(path),
+            (None, None) => Ok(vec![Pose::identity()]),
+        }
+    }
+
+    /// The file that is read, if any.
+    pub fn file(&self) -> Option<&Path> {
+        let file = self.poses.as_deref();
+        file.filter(|path| *path != Path::new("-"))
+    }
+}
+
+/// The poses of a file, at least one; `-` is standard input.
+pub fn pose_file(path: &Path) -> Result<Vec<Pose>, Failure> {
+    let is_standard = path == Path::new("-");
+    let name = if is_standard {
+        Path::new("standard input")
+    } else {
+        path
+    };
+    let text = if is_standard {
+        standard_input()
+    } else {
+        read_bounded(path, MAX_POSES)
+    };
+    let text = text.map_err(|error| {
+        Failure::input(format!("cannot read the poses: {error}"))
+            .at(name)
+            .remedy("check the name and the permissions of the file")
+    })?;
+    let poses = read_list(name, &text).map_err(|error| match error {
+        error @ PoseTableError::Field { .. } | error @ PoseTableError::Quaternion { .. } => {
+            error.into()
+        }
+        error => Failure::from(error).remedy("give columns qw, qx, qy, qz, tx, ty and tz"),
+    })?;
+    if poses.is_empty() {
+        return Err(Failure::input("there are no poses in the file")
+            .at(name)
+            .remedy("give a row of qw,qx,qy,qz,tx,ty,tz for each pose"));
+    }
+    Ok(poses)
+}
+
+/// Most bytes of standard input.
+const MAX_STANDARD_INPUT: u64 = 1 << 30;
+
+fn standard_input() -> io::Result<Vec<u8>> {
+    let mut text = Vec::new();
+    io::stdin()
+        .lock()
+        .take(MAX_STANDARD_INPUT + 1)
+        .read_to_end(&mut text)?;
+    if text.len() as u64 > MAX_STANDARD_INPUT {
+        return Err(io::ErrorKind::FileTooLarge.into());
+    }
+    Ok(text)
+}
+
+/// A rotation from four numbers, as a pose without translation.
+pub fn rotation(text: &str) -> Result<Pose, Failure> {
+    let parts = text.split(',').count();
+    if parts != 4 {
+        return Err(
+            Failure::input(format!("--rotation has {parts} numbers, not four"))
+                .remedy("give a unit quaternion, the scalar part first: qw,qx,qy,qz"),
+        );
+    }
+    pose(&format!("{text},0,0,0"))
+}
+
+/// A pose from seven numbers.
+pub fn pose(text: &str) -> Result<Pose, Failure> {
+    let refused = |message: String, remedy: &str| Failure::input(message).remedy(remedy);
+    let numbers = text.split(',').map(|part| {
+        let number = part.trim().parse::<f64>().ok();
+        let number = number.filter(|number| number.abs() <= LARGEST_LENGTH);
+        number.ok_or_else(|| {
+            refused(
+                format!(
+                    "--pose: '{}' is not a number from -1e30 to 1e30",
+                    part.trim()
+                ),
+                "give seven numbers, qw,qx,qy,qz,tx,ty,tz, with commas between them",
+            )
+        })
+    });
+    let numbers: Vec<f64> = numbers.collect::<Result<_, _>>()?;
+    let [qw, qx, qy, qz, tx, ty, tz] = numbers[..] else {
+        return Err(refused(
+            format!("--pose has {} numbers, not seven", numbers.len()),
+            "give a unit quaternion and a translation: qw,qx,qy,qz,tx,ty,tz",
+        ));
+    };
+    let length = [qw, qx, qy, qz]
+        .iter()
+        .fold(0.0f64, |length, part| length.hypot(*part));
+    if (length - 1.0).abs() > UNIT_LENGTH {
+        return Err(refused(
+            format!(
+                "--pose: the quaternion has length {length}; a rotation has length 1, to within {UNIT_LENGTH}"
+            ),
+            "divide qw, qx, qy and qz by their length, and check that the scalar part comes first",
+        ));
+    }
+    Ok(Pose::from_parts([qw, qx, qy, qz], [tx, ty, tz]))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn poses_are_normalised_when_they_nearly_are() {
+        let found = pose("1.0005, 0,0,0, -1,2.5,3e1").unwrap();
+        assert_eq!(
+            found,
+            Pose::from_parts([1.0, 0.0, 0.0, 0.0], [-1.0, 2.5, 30.0])
+        );
+        for text in [
+            "1,0,0,0,0,0",
+            "1,0,0,0,0,0,0,0",
+            "",
+            "1,0,0,0,0,0,nan",
+            "1,0,0,0,0,inf,0",
+            "1,0,0,0,0,,0",
+            "1.002,0,0,0,0,0,0",
+            "0,0,0,0,0,0,0",
+            "1e300,1e300,0,0,0,0,0",
+            "1,0,0,0,1e31,0,0",
+        ] {
+            let failure = pose(text).unwrap_err();
+            assert_eq!(failure.exit_code(), 2, "{text}");
+            assert!(failure.text().contains("help:"), "{text}");
+        }
+    }
+}

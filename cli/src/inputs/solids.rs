@@ -1,0 +1,180 @@
+//! Solids named on the command line: a mesh, a molecule or a file of balls, as balls between which its surface lies.
+
+use std::path::Path;
+
+use clap::Args;
+use knotdock::options::InputOptions;
+use knotdock::options::SampleGrid;
+use knotdock::output::records::input_record::InputRecord;
+use knotdock_structures::Ball;
+use knotdock_structures::ball_solid::{BallSolid, MeshSampling};
+use knotdock_structures::knots::KnotsError;
+use knotdock_structures::mesh::Figure;
+use knotdock_structures::molecule::{InputSpec, Molecule};
+use serde_json::{Value, json};
+
+use crate::inputs::ball_files::{BallFileInput, ball_file_of};
+use crate::inputs::meshes::{MeshInput, is_mesh};
+use crate::inputs::molecules::Input;
+use crate::inputs::room::{room_to_read, room_to_sample};
+use crate::messages::console::Console;
+use crate::messages::failure::Failure;
+
+/// Options on solids.
+#[derive(Args, Clone, Debug)]
+#[command(next_help_heading = "Solids")]
+pub struct SolidArguments {
+    /// Nodes of the grid on which a mesh is sampled by balls, as 2^15 or 32768: the more, the closer its surface is
+    /// known.
+    #[arg(long, value_name = "COUNT", default_value = "2^15")]
+    pub grid: SampleGrid,
+    #[command(flatten)]
+    pub input: InputOptions,
+}
+
+/// What kind of file a solid came from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum SolidKind {
+    /// Sampled by Algorithm 1.
+    Mesh,
+    /// A ball an atom.
+    Molecule,
+    /// Balls as they are.
+    Balls,
+}
+
+/// A solid as read.
+#[derive(Clone)]
+pub struct SolidInput {
+    /// File, the part of it that was read, and checksum.
+    pub record: InputRecord,
+    /// What kind of file it was.
+    pub kind: SolidKind,
+    /// The solid.
+    pub solid: BallSolid,
+    report: String,
+    warnings: Vec<String>,
+    sampling: Option<MeshSampling>,
+}
+
+impl SolidInput {
+    /// Reads what `text` names: `part.stl`, `molecule.pdb:A`, `knots.csv`, `robot.yml:hand`. `allowed` is the memory
+    /// that a process may take, in bytes.
+    ///
+    /// # Errors
+    /// [`Failure`] with file, line and remedy.
+    pub fn read(
+        text: &str,
+        arguments: &SolidArguments,
+        allowed: Option<u64>,
+    ) -> Result<Self, Failure> {
+        if let Some(spec) = ball_file_of(text) {
+            return Self::of_balls(&spec);
+        }
+        let spec = InputSpec::parse(text)?;
+        room_to_read(std::slice::from_ref(&spec), allowed)?;
+        if is_mesh(&spec.path) {
+            room_to_sample(arguments.grid.per_axis, allowed)?;
+            return Self::of_mesh(&spec, arguments.grid.per_axis);
+        }
+        let input = Input::of(&spec, &arguments.input.reading())?;
+        Self::of_molecule(input.record, &input.molecule)
+    }
+
+    fn of_balls(spec: &InputSpec) -> Result<Self, Failure> {
+        let input = BallFileInput::read(spec)?;
+        let file = &input.file;
+        let solid = BallSolid::from_balls(&file.balls, file.weights.as_deref())
+            .map_err(|error| Failure::input(error).at(&spec.path))?;
+        Ok(Self {
+            kind: SolidKind::Balls,
+            report: input.report(),
+            warnings: input.warnings(),
+            record: input.record,
+            solid,
+            sampling: None,
+        })
+    }
+
+    fn of_mesh(spec: &InputSpec, per_axis: usize) -> Result<Self, Failure> {
+        let MeshInput {
+            record,
+            report,
+            solid,
+            ..
+        } = MeshInput::read(spec)?;
+        let (solid, sampling) = BallSolid::from_mesh(&solid, per_axis).map_err(|error| {
+            Failure::input(error).at(&spec.path).remedy(
+                "check that the mesh is closed and one solid, or sample it on a finer --grid",
+            )
+        })?;
+        let mut warnings = report.warnings();
+        if sampling.inward > sampling.grid_epsilon {
+            warnings.push(format!(
+                "the balls come within {} of the surface, not within {} as asked; a finer --grid comes closer",
+                Figure(sampling.inward),
+                Figure(sampling.grid_epsilon)
+            ));
+        }
+        Ok(Self {
+            record,
+            kind: SolidKind::Mesh,
+            report: format!(
+                "{report}\n  {} balls inside, the surface within {} of them",
+                solid.inner().len(),
+                Figure(solid.epsilon())
+            ),
+            warnings,
+            solid,
+            sampling: Some(sampling),
+        })
+    }
+
+    fn of_molecule(record: InputRecord, molecule: &Molecule) -> Result<Self, Failure> {
+        let refused = |error: KnotsError| Failure::input(error).at(&record.path);
+        let knots = molecule.knots().map_err(refused)?;
+        let balls = knots.centers.iter().zip(&knots.radii);
+        let balls: Vec<Ball> = balls
+            .map(|(&center, &radius)| Ball { center, radius })
+            .collect();
+        let solid = BallSolid::from_balls(&balls, None).map_err(refused)?;
+        Ok(Self {
+            record,
+            kind: SolidKind::Molecule,
+            report: molecule.report.to_string(),
+            warnings: Vec::new(),
+            solid,
+            sampling: None,
+        })
+    }
+
+    /// Reports what was read under the name `side`, with warnings.
+    pub fn describe(&self, side: &str, console: Console) {
+        console.say(format!("{side}: {}", self.report));
+        for warning in &self.warnings {
+            console.warn(format!("{}: {warning}", self.record.path.display()));
+        }
+    }
+
+    /// The path of the file.
+    pub fn path(&self) -> &Path {
+        &self.record.path
+    }
+
+    /// What was read, for JSON.
+    pub fn object(&self) -> Value {
+        json!({
+            "file": self.record.path.display().to_string(),
+            "kind": match self.kind {
+                SolidKind::Mesh => "mesh",
+                SolidKind::Molecule => "molecule",
+                SolidKind::Balls => "balls",
+            },
+            "balls": self.solid.inner().len(),
+            "epsilon": self.solid.epsilon(),
+            "grid_per_axis": self.sampling.map(|sampling| sampling.per_axis),
+            "volume_missed_by_balls": self.sampling.and_then(|sampling| sampling.missed),
+            "warnings": self.warnings,
+        })
+    }
+}

@@ -1,0 +1,289 @@
+//! Where words go: the report on standard output, progress on standard error; under `--json` one object on standard
+//! output and every word on standard error; under `--quiet` no words but errors.
+//!
+//! Control characters of files and names are escaped: [`shown`].
+//!
+//! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not
+//! written. A disk that is full does not stop one either, but the command fails in the end.
+
+use std::io::{self, IsTerminal, Write};
+use std::sync::OnceLock;
+use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
+use std::thread::{Builder, JoinHandle};
+use std::time::Duration;
+
+use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
+use knotdock::progress::{Ended, Progress};
+
+use crate::messages::colour::painted;
+use crate::messages::failure::Failure;
+use crate::messages::listener::Listener;
+use crate::messages::shown::{shown, shown_json};
+
+/// Why a part of the report could not be written, the first time that happened.
+static LOST: OnceLock<io::Error> = OnceLock::new();
+
+/// The terminal as a command sees it, or the program that listens in its place.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Console<'a> {
+    /// Results as one JSON object.
+    pub json: bool,
+    /// No words but errors.
+    pub quiet: bool,
+    /// More words.
+    pub verbose: bool,
+    /// Hears everything in the terminal's place.
+    pub listener: Option<&'a dyn Listener>,
+}
+
+impl<'a> Console<'a> {
+    /// The console of what is done within a command and has no words of its own but errors.
+    pub fn silent(self) -> Self {
+        Self {
+            quiet: true,
+            json: false,
+            verbose: false,
+            ..self
+        }
+    }
+
+    /// Writes a paragraph of the report.
+    pub fn say(&self, text: impl ToString) {
+        if self.quiet {
+            return;
+        }
+        if let Some(listener) = self.listener {
+            return listener.say(&text.to_string());
+        }
+        if self.json {
+            write_line(&mut io::stderr(), &shown(&text.to_string()));
+        } else {
+            let mut stream = io::stdout();
+            let text = text.to_string();
+            let written = writeln!(stream, "{}", shown(&text)).and_then(|()| stream.flush());
+            if let Err(error) = written {
+                // Only the first failure is reported.
+                let _ = LOST.set(error);
+            }
+        }
+    }
+
+    /// Writes a paragraph that only `--verbose` wants.
+    pub fn detail(&self, text: impl ToString) {
+        if self.verbose {
+            self.say(text);
+        }
+    }
+
+    /// Whether all of the report could be written, if anyone was there to read it.
+    pub fn all_said() -> Result<(), Failure> {
+        LOST.get().map_or(Ok(()), unwritten)
+    }
+
+    /// Writes a warning on standard error.
+    pub fn warn(&self, text: impl ToString) {
+        if self.quiet {
+            return;
+        }
+        if let Some(listener) = self.listener {
+            listener.warn(&text.to_string());
+        } else {
+            let text = format!("warning: {}", text.to_string());
+            write_line(&mut io::stderr(), &painted(&shown(&text)));
+        }
+    }
+
+    /// Writes on standard error what went wrong and does not end the command.
+    pub fn error(&self, text: impl ToString) {
+        if let Some(listener) = self.listener {
+            return listener.error(&text.to_string());
+        }
+        write_line(&mut io::stderr(), &shown(&text.to_string()));
+    }
+
+    /// Writes the command's JSON object, if it was requested: what cannot be written is a failure then, for the
+    /// object is all there is, unless its reader has gone.
+    pub fn result(&self, object: &serde_json::Value) -> Result<(), Failure> {
+        if let Some(listener) = self.listener {
+            listener.result(object);
+            return Ok(());
+        }
+        if !self.json {
+            return Ok(());
+        }
+        let mut stream = io::stdout();
+        let object = object.to_string();
+        match writeln!(stream, "{}", shown_json(&object)).and_then(|()| stream.flush()) {
+            Err(error) => unwritten(&error),
+            Ok(()) => Ok(()),
+        }
+    }
+
+    /// Writes a failure: for a person on standard error, for a program on standard output as well.
+    pub fn fail(&self, failure: &Failure) {
+        if self.json {
+            let object = failure.json().to_string();
+            write_line(&mut io::stdout(), &shown_json(&object));
+        }
+        write_line(&mut io::stderr(), &painted(&shown(&failure.text())));
+    }
+
+    /// Tells whoever listens that a stage of so many steps begins; the terminal has lines of its own for them.
+    pub fn begins(&self, stage: &str, total: usize) {
+        if let (Some(listener), false) = (self.listener, self.quiet || total == 0) {
+            listener.stage(stage, total as u64);
+        }
+    }
+
+    /// Tells whoever listens that a step of the stage is done.
+    pub fn advances(&self) {
+        if let (Some(listener), false) = (self.listener, self.quiet) {
+            listener.advance(1);
+        }
+    }
+
+    /// Fails where whoever listens ends the command.
+    pub fn go_on(&self) -> Result<(), Failure> {
+        let ended = self.listener.map_or(Ok(()), Listener::go_on);
+        ended.map_err(|why| Failure::of_program(why).remedy("start it again"))
+    }
+
+    /// A progress bar on standard error; none when that is not a terminal or words are not wanted.
+    pub fn progress(&self) -> ProgressLine<'a> {
+        let bar = ProgressBar::hidden();
+        // The templates are constant; should one not parse, indicatif's own style serves.
+        if let Ok(style) = ProgressStyle::with_template(
+            "{msg:>12} [{wide_bar}] {human_pos}/{human_len}, {elapsed} gone, {eta} left",
+        ) {
+            bar.set_style(style.progress_chars("=> "));
+        }
+        let shown = !self.quiet && self.listener.is_none() && io::stderr().is_terminal();
+        ProgressLine {
+            ticker: shown.then(|| Ticker::start(&bar)).flatten(),
+            bar,
+            shown,
+            is_heard: !self.quiet && self.listener.is_some(),
+            listener: self.listener,
+        }
+    }
+}
+
+/// A failure to write to standard output, unless its reader has gone.
+fn unwritten(error: &io::Error) -> Result<(), Failure> {
+    if error.kind() == io::ErrorKind::BrokenPipe {
+        return Ok(());
+    }
+    Err(
+        Failure::other(format!("cannot write to standard output: {error}"))
+            .remedy("check the free space there"),
+    )
+}
+
+/// Writes a line of words; a closed pipe or a full disk behind the stream is not this program's to report.
+fn write_line(stream: &mut dyn Write, text: &str) {
+    let _ = writeln!(stream, "{text}").and_then(|()| stream.flush());
+}
+
+/// The progress of a search on one line of the terminal, cleared when the search ends.
+pub struct ProgressLine<'a> {
+    bar: ProgressBar,
+    shown: bool,
+    ticker: Option<Ticker>,
+    /// Whether a listener hears of it, beside saying whether it goes on.
+    is_heard: bool,
+    listener: Option<&'a dyn Listener>,
+}
+
+/// Time between two drawings of a line whose bar stands still.
+const TICK: Duration = Duration::from_millis(200);
+
+/// A thread that draws the line anew, so that its time goes on where nothing else does.
+///
+/// indicatif has one, too, and panics where the thread cannot be started.
+struct Ticker {
+    /// Ends the thread where it is dropped.
+    running: Option<Sender<()>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Ticker {
+    /// Starts it; `None` where the system has no thread for it: the line then moves with the work alone.
+    fn start(bar: &ProgressBar) -> Option<Self> {
+        let (running, is_running) = channel::<()>();
+        let bar = bar.clone();
+        let ticks = move || {
+            while is_running.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
+                if !bar.is_finished() {
+                    bar.tick();
+                }
+            }
+        };
+        let thread = Builder::new()
+            .name("progress".to_owned())
+            .spawn(ticks)
+            .ok()?;
+        Some(Self {
+            running: Some(running),
+            thread: Some(thread),
+        })
+    }
+}
+
+impl Drop for Ticker {
+    fn drop(&mut self) {
+        self.running.take();
+        if let Some(thread) = self.thread.take() {
+            // It has nothing to report, and its end is all that is waited for.
+            let _ = thread.join();
+        }
+    }
+}
+
+impl ProgressLine<'_> {
+    /// Clears the line, so that a sentence can be written in its place.
+    pub fn clear(&self) {
+        self.bar.finish_and_clear();
+    }
+}
+
+impl Progress for ProgressLine<'_> {
+    fn stage(&self, name: &str, total: u64) {
+        // A stage without steps would show as 0 of 0.
+        if total == 0 {
+            return;
+        }
+        if self.is_heard {
+            if let Some(listener) = self.listener {
+                listener.stage(name, total);
+            }
+            return;
+        }
+        self.bar.finish_and_clear();
+        // Each of these would draw a line of its own that is half the old stage's and half the new one's.
+        self.bar.set_draw_target(ProgressDrawTarget::hidden());
+        self.bar.reset();
+        self.bar.set_length(total);
+        self.bar.set_message(name.to_owned());
+        if self.shown {
+            self.bar.set_draw_target(ProgressDrawTarget::stderr());
+        }
+    }
+
+    fn advance(&self, by: u64) {
+        match self.listener {
+            Some(listener) if self.is_heard => listener.advance(by),
+            _ => self.bar.inc(by),
+        }
+    }
+
+    fn go_on(&self) -> Result<(), Ended> {
+        self.listener.map_or(Ok(()), Listener::go_on)
+    }
+}
+
+impl Drop for ProgressLine<'_> {
+    fn drop(&mut self) {
+        self.ticker.take();
+        self.bar.finish_and_clear();
+    }
+}

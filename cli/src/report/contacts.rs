@@ -1,0 +1,71 @@
+//! The contacts of every pose of a run.
+
+use std::collections::HashSet;
+
+use knotdock_structures::molecule::Molecule;
+use rayon::prelude::*;
+
+use crate::report::MAX_ROWS;
+use knotdock::interface::{CONSENSUS, Contact, ContactFinder, ResidueShare, residue_shares};
+use knotdock::output::tables::poses::PoseTable;
+use knotdock::pose_space::arrangement::Arrangement;
+
+/// The contacts of the first [`MAX_ROWS`] rows of a run of molecules.
+pub struct RunContacts<'a> {
+    finder: ContactFinder<'a>,
+    /// Of each row.
+    rows: Vec<Vec<Contact>>,
+    /// Rows that stand for the best clusters.
+    firsts: Vec<usize>,
+}
+
+impl<'a> RunContacts<'a> {
+    /// Of molecules, in the poses of a table; charges are those at a pH.
+    pub fn of(
+        molecules: [&'a Molecule; 2],
+        table: &PoseTable,
+        arrangement: Arrangement,
+        ph: f64,
+    ) -> Self {
+        let finder = ContactFinder::new(molecules, ph);
+        let rows = table.rows().get(..MAX_ROWS).unwrap_or(table.rows());
+        let contacts = rows.par_iter().map(|row| {
+            // A pose that forms no ring places nothing.
+            let poses = arrangement.images(&row.pose).unwrap_or_default();
+            finder.contacts(&poses)
+        });
+        let contacts = contacts.collect();
+        let mut seen = HashSet::new();
+        let firsts = (0..rows.len()).filter(|&row| match table.field(row, "cluster") {
+            None | Some("") => true,
+            Some(cluster) => seen.insert(cluster),
+        });
+        let firsts = firsts.take(CONSENSUS).collect();
+        Self {
+            finder,
+            rows: contacts,
+            firsts,
+        }
+    }
+
+    /// The residues that contacts are of.
+    pub fn finder(&self) -> &ContactFinder<'a> {
+        &self.finder
+    }
+
+    /// The contacts of each row.
+    pub fn rows(&self) -> &[Vec<Contact>] {
+        &self.rows
+    }
+
+    /// Clusters that the shares count.
+    pub fn counted(&self) -> usize {
+        self.firsts.len()
+    }
+
+    /// How many of the best clusters touch each residue of either side.
+    pub fn shares(&self) -> [Vec<ResidueShare>; 2] {
+        let clusters = self.firsts.iter().map(|&row| self.rows[row].as_slice());
+        residue_shares(&self.finder, &clusters.collect::<Vec<_>>())
+    }
+}

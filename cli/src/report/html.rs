@@ -1,0 +1,146 @@
+//! The page of a report: head, sections, packed data, scripts and seal.
+
+use std::fmt::Write as _;
+
+use serde_json::Value;
+
+use crate::report::packed::packed;
+use crate::report::viewer::Viewer;
+use knotdock::output::files::seal::{BEGINNING, sealed};
+use knotdock::output::records::program::VERSION_WITH_COMMIT;
+
+/// The scripts, in the order in which each uses those before it.
+const SCRIPTS: [&str; 10] = [
+    include_str!("page/packed.js"),
+    include_str!("page/table.js"),
+    include_str!("page/charts.js"),
+    include_str!("page/geometry.js"),
+    include_str!("page/scene.js"),
+    include_str!("page/panels.js"),
+    include_str!("page/run.js"),
+    include_str!("page/list.js"),
+    include_str!("page/solids.js"),
+    include_str!("page/main.js"),
+];
+
+/// What a report may load: what is in it, and nothing else.
+const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'; \
+                      img-src data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'";
+
+/// A page to be.
+pub(super) struct Page<'a> {
+    /// Title.
+    pub title: String,
+    /// Sections as HTML.
+    pub sections: Vec<String>,
+    /// What the scripts read.
+    pub data: &'a Value,
+    /// The library of the view, where it is shown.
+    pub viewer: Option<&'a Viewer>,
+}
+
+impl Page<'_> {
+    /// The page as text, sealed.
+    pub fn text(&self) -> String {
+        let title = escaped(&self.title);
+        let mut text = format!(
+            "{BEGINNING} {VERSION_WITH_COMMIT} -->\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+             <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
+             <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
+             <link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n\
+             <header><h1>{title}</h1></header>\n<main>\n",
+            style = include_str!("page/style.css"),
+        );
+        for section in &self.sections {
+            text += section;
+        }
+        let _ = write!(
+            text,
+            "</main>\n<footer><p>Written by knotdock {VERSION_WITH_COMMIT}.{}</p></footer>\n",
+            match self.viewer {
+                Some(_) =>
+                    " The view is 3Dmol.js (Rego and Koes, Bioinformatics 31 (2015) 1322), under the BSD 3-clause licence.",
+                None => "",
+            }
+        );
+        text += &script("data", &packed(self.data.to_string().as_bytes()));
+        if let Some(viewer) = self.viewer {
+            let licence = viewer.licence.replace("--", "- -");
+            let _ = write!(text, "<!--\n{licence}\n-->\n");
+            text += &script("viewer", &viewer.packed);
+        }
+        text += "<script>\n\"use strict\";\n(() => {\n";
+        for script in SCRIPTS {
+            text += script;
+        }
+        text += "})();\n</script>\n</body>\n</html>\n";
+        sealed(text)
+    }
+}
+
+/// A script element that holds packed bytes.
+fn script(id: &str, packed: &str) -> String {
+    format!("<script type=\"text/plain\" id=\"{id}\">{packed}</script>\n")
+}
+
+/// Text as HTML, also in attributes.
+pub(super) fn escaped(text: &str) -> String {
+    let mut escaped = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => escaped += "&amp;",
+            '<' => escaped += "&lt;",
+            '>' => escaped += "&gt;",
+            '"' => escaped += "&quot;",
+            '\'' => escaped += "&#39;",
+            c => escaped.push(c),
+        }
+    }
+    escaped
+}
+
+/// A section with a heading.
+pub(super) fn section(id: &str, heading: &str, inner: &str) -> String {
+    format!(
+        "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">\n<h2 id=\"{id}-heading\">{}</h2>\n{inner}</section>\n",
+        escaped(heading)
+    )
+}
+
+/// A table of text, whose first line names the columns.
+pub(super) fn table(caption: &str, lines: &[Vec<String>]) -> String {
+    let mut text = format!(
+        "<div class=\"scroll\"><table>\n<caption>{}</caption>\n",
+        escaped(caption)
+    );
+    for (number, line) in lines.iter().enumerate() {
+        let tag = if number == 0 {
+            "th scope=\"col\""
+        } else {
+            "td"
+        };
+        let close = if number == 0 { "th" } else { "td" };
+        let cells: String = line
+            .iter()
+            .map(|cell| format!("<{tag}>{}</{close}>", escaped(cell)))
+            .collect();
+        let _ = writeln!(text, "<tr>{cells}</tr>");
+    }
+    text + "</table></div>\n"
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn names_of_files_are_no_markup() {
+        assert_eq!(
+            escaped("<img src=x onerror='a'> & \"b\""),
+            "&lt;img src=x onerror=&#39;a&#39;&gt; &amp; &quot;b&quot;"
+        );
+        let lines = [vec!["<b>".to_owned()], vec!["</td>".to_owned()]];
+        let text = table("<i>", &lines);
+        assert!(!text.contains("<b>") && !text.contains("<i>"));
+    }
+}

@@ -1,0 +1,268 @@
+//! Reports of batches, ensembles and sweeps, from the files of their directories.
+
+use std::fs;
+use std::io;
+use std::path::{Path, PathBuf};
+
+use csv::StringRecord;
+use serde_json::Value;
+
+use crate::records::ensemble_record::{MEMBERS, RECORD};
+use crate::report::list::ListReport;
+use crate::tables::batch_results::RESULTS;
+use crate::tables::report::counted;
+use knotdock::bounded_read::{MAX_POSES, MAX_RECORD, read_bounded_file};
+use knotdock::output::files::seal::REPORT;
+use knotdock::table_text::cells::unquoted_row;
+
+/// Why the files of a directory make no report.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot read {}: {source}", path.display())]
+pub struct ListError {
+    /// The file.
+    pub path: PathBuf,
+    /// What is wrong with it.
+    pub source: io::Error,
+}
+
+impl ListError {
+    /// Remedy for the user.
+    pub fn remedy(&self) -> &'static str {
+        "name a directory that `knotdock dock`, `batch` or `tradeoff` wrote, with its files as they were"
+    }
+
+    fn at(path: &Path, source: impl Into<io::Error>) -> Self {
+        Self {
+            path: path.to_owned(),
+            source: source.into(),
+        }
+    }
+}
+
+/// What a directory holds that is no single run.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Listed {
+    /// Pairs of a batch.
+    Batch,
+    /// Members of an ensemble.
+    Ensemble,
+    /// Settings of a sweep.
+    Tradeoff,
+}
+
+impl Listed {
+    /// What a directory holds, where it is one of these.
+    pub fn in_directory(directory: &Path) -> Option<Self> {
+        if directory.join("run.json").is_file() {
+            return None;
+        }
+        let kinds = [
+            (RECORD, Self::Ensemble),
+            ("tradeoff.json", Self::Tradeoff),
+            (RESULTS, Self::Batch),
+        ];
+        let found = kinds
+            .into_iter()
+            .find(|(name, _)| directory.join(name).is_file());
+        found.map(|(_, kind)| kind)
+    }
+
+    /// The page of a directory, made of files in a folder, which may be where they are staged; `name` is what the directory
+    /// is called.
+    ///
+    /// # Errors
+    /// [`ListError`] where a file cannot be read.
+    pub fn report(self, directory: &Path, files: &Path, name: &str) -> Result<String, ListError> {
+        let report = match self {
+            Self::Batch => batch(directory, name)?,
+            Self::Ensemble => ensemble(directory, files, name)?,
+            Self::Tradeoff => tradeoff(files, name)?,
+        };
+        Ok(report.text())
+    }
+}
+
+type Table = (StringRecord, Vec<StringRecord>);
+
+/// A table as it stands.
+fn table(path: &Path) -> Result<Table, ListError> {
+    let bytes = read_bounded_file(path, MAX_POSES).map_err(|error| ListError::at(path, error))?;
+    let mut reader = csv::Reader::from_reader(bytes.as_slice());
+    let read = reader.headers().map(unquoted_row).and_then(|header| {
+        let rows = reader
+            .records()
+            .map(|row| row.map(|row| unquoted_row(&row)));
+        Ok((header, rows.collect::<Result<Vec<_>, _>>()?))
+    });
+    read.map_err(|error| ListError::at(path, error))
+}
+
+fn record(path: &Path) -> Result<Value, ListError> {
+    let bytes = read_bounded_file(path, MAX_RECORD).map_err(|error| ListError::at(path, error))?;
+    serde_json::from_slice(&bytes).map_err(|error| ListError::at(path, error))
+}
+
+/// The fields of a column, empty where there is none.
+fn fields<'a>((header, records): &'a Table, name: &str) -> impl Iterator<Item = &'a str> + use<'a> {
+    let place = header.iter().position(|column| column == name);
+    let field = move |record: &'a StringRecord| place.and_then(|place| record.get(place));
+    records
+        .iter()
+        .map(move |record| field(record).unwrap_or_default())
+}
+
+/// The page of a row below a directory, where it is there: the name is that of a folder and leads nowhere else.
+fn link(directory: &Path, folder: &str, name: &str) -> Option<String> {
+    let is_plain = !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\\', ':']);
+    let is_there = || directory.join(folder).join(name).join(REPORT).is_file();
+    let escape = |byte: u8| match byte {
+        b'a'..=b'z' | b'A'..=b'Z' | b'0'..=b'9' | b'-' | b'_' | b'.' => {
+            char::from(byte).to_string()
+        }
+        byte => format!("%{byte:02X}"),
+    };
+    (is_plain && is_there()).then(|| {
+        let name: String = name.bytes().map(escape).collect();
+        match folder {
+            "" => format!("{name}/{REPORT}"),
+            folder => format!("{folder}/{name}/{REPORT}"),
+        }
+    })
+}
+
+fn batch(directory: &Path, name: &str) -> Result<ListReport, ListError> {
+    let table = table(&directory.join(RESULTS))?;
+    let count = |status: &str| {
+        fields(&table, "status")
+            .filter(|field| *field == status)
+            .count()
+    };
+    let [done, failed, pending] = ["done", "failed", "pending"].map(count);
+    let mut sentences = vec![format!(
+        "Of {}, {done} are done, {failed} failed and {pending} are pending.",
+        counted(table.1.len(), "pair")
+    )];
+    let classes = fields(&table, "capri")
+        .filter(|class| !class.is_empty())
+        .count();
+    if classes > 0 {
+        let within = |most: usize| {
+            let ranks = fields(&table, "first_acceptable_rank");
+            ranks
+                .filter(|rank| rank.parse().is_ok_and(|rank: usize| rank <= most))
+                .count()
+        };
+        sentences.push(format!(
+            "A known complex was given for {classes} of them. An acceptable row is first for {}, among the first 10 for {} \
+             and among the first 100 for {}.",
+            within(1),
+            within(10),
+            within(100)
+        ));
+    }
+    let links = fields(&table, "name")
+        .map(|name| link(directory, "", name))
+        .collect();
+    Ok(ListReport {
+        title: format!("Batch {name}"),
+        sentences,
+        caption: "Pairs, each with the best row of its run. A name leads to the report of the pair.",
+        header: table.0,
+        records: table.1,
+        main: &[
+            "name",
+            "status",
+            "error",
+            "clusters",
+            "score",
+            "z_score",
+            "irmsd",
+            "dockq",
+            "capri",
+            "first_acceptable_rank",
+        ],
+        links,
+        picture: None,
+    })
+}
+
+fn ensemble(directory: &Path, files: &Path, name: &str) -> Result<ListReport, ListError> {
+    let record = record(&files.join(RECORD))?;
+    let table = table(&files.join("poses.csv"))?;
+    let size = |side: &str| record[side].as_array().map_or(0, Vec::len);
+    let members = record["members"].as_array().map_or(0, Vec::len);
+    let sentences = vec![
+        format!(
+            "{} of the receptor and {} of the ligand were docked in {}.",
+            counted(size("receptor"), "conformation"),
+            counted(size("ligand"), "conformation"),
+            counted(members, "run")
+        ),
+        format!(
+            "Their poses form {} in all. A rank leads to the report of the run that the pose is of, where `rank there` is \
+             its rank.",
+            counted(
+                record["results"]["clusters"].as_u64().unwrap_or(0) as usize,
+                "cluster"
+            )
+        ),
+    ];
+    let links = fields(&table, "member")
+        .map(|member| link(directory, MEMBERS, member))
+        .collect();
+    Ok(ListReport {
+        title: format!("Ensemble {name}"),
+        sentences,
+        caption: "Ranked poses of all members",
+        header: table.0,
+        records: table.1,
+        main: &[
+            "rank",
+            "score",
+            "cluster_size",
+            "member",
+            "member_rank",
+            "receptor_model",
+            "ligand_model",
+            "z_score",
+            "irmsd",
+            "lrmsd",
+            "dockq",
+            "capri",
+        ],
+        links,
+        picture: None,
+    })
+}
+
+fn tradeoff(files: &Path, name: &str) -> Result<ListReport, ListError> {
+    let record = record(&files.join("tradeoff.json"))?;
+    let table = table(&files.join("tradeoff.csv"))?;
+    let path = files.join("tradeoff.svg");
+    let picture = fs::read(&path).map_err(|error| ListError::at(&path, error))?;
+    let mut sentences = vec![format!(
+        "{} were measured.",
+        counted(table.1.len(), "setting")
+    )];
+    sentences.extend(record["advice"]["text"].as_str().map(str::to_owned));
+    Ok(ListReport {
+        title: format!("Accuracy against time, {name}"),
+        sentences,
+        caption: "Settings as they were measured",
+        links: vec![None; table.1.len()],
+        header: table.0,
+        records: table.1,
+        main: &[
+            "setting",
+            "options",
+            "wall_seconds",
+            "error_rms",
+            "agreement",
+            "first_acceptable",
+            "acceptable_in_100",
+            "front_error",
+            "front_agreement",
+        ],
+        picture: Some((picture, "Error and agreement against time")),
+    })
+}

@@ -1,0 +1,163 @@
+//! The summary of a run's report, in words.
+
+use std::fmt::Write as _;
+
+use serde_json::Value;
+
+use crate::report::html::escaped;
+use crate::report::run_data::active;
+use crate::report::run_parts::RunReport;
+use crate::tables::report::counted;
+use knotdock::table_text::named_columns::listed;
+
+/// Name of a file without its folder.
+fn file_name(path: &Value) -> &str {
+    let path = path.as_str().unwrap_or_default();
+    path.rsplit(['/', '\\']).next().unwrap_or(path)
+}
+
+pub(super) fn title(report: &RunReport) -> String {
+    let inputs = &report.record["inputs"];
+    let [receptor, ligand] = ["receptor", "ligand"].map(|side| file_name(&inputs[side]["path"]));
+    match report.options.search.symmetry {
+        Some(symmetry) => format!("{receptor} as a ring of {symmetry}"),
+        None => format!("{ligand} docked to {receptor}"),
+    }
+}
+
+/// What was docked and what came of it, where so many rows are shown.
+pub(super) fn summary(report: &RunReport, shown: usize) -> String {
+    let mut sentences = Vec::new();
+    let record = report.record;
+    let side = |side: &str| {
+        let entry = &record["inputs"][side];
+        let chains = entry["report"]["chains"]
+            .as_array()
+            .map_or(&[][..], Vec::as_slice);
+        let names: Vec<&str> = chains
+            .iter()
+            .filter_map(|chain| chain["name"].as_str())
+            .collect();
+        let atoms = entry["atoms"].as_u64();
+        match (atoms, names.len()) {
+            (Some(atoms), 1) => format!(
+                "{} (chain {}, {atoms} atoms)",
+                file_name(&entry["path"]),
+                names[0]
+            ),
+            (Some(atoms), _) => format!(
+                "{} (chains {}, {atoms} atoms)",
+                file_name(&entry["path"]),
+                names.join(", ")
+            ),
+            (None, _) => file_name(&entry["path"]).to_owned(),
+        }
+    };
+    sentences.push(match report.options.search.symmetry {
+        Some(symmetry) => format!(
+            "Copies of {} were put together as {symmetry}.",
+            side("receptor")
+        ),
+        None => format!(
+            "The ligand is {}, the receptor {}.",
+            side("ligand"),
+            side("receptor")
+        ),
+    });
+    let results = &record["results"];
+    let [rotations, poses, clusters, rows] = ["rotations", "poses", "clusters", "rows"]
+        .map(|name| results[name].as_u64().unwrap_or(0) as usize);
+    sentences.push(format!(
+        "The search tried {}, and kept {}, which form {}.",
+        counted(rotations, "orientation"),
+        counted(poses, "pose"),
+        counted(clusters, "cluster"),
+    ));
+    if shown < rows {
+        sentences.push(format!(
+            "This report shows the first {shown} of {rows} rows; poses.csv has all."
+        ));
+    }
+    if record["sharp"]["finding"] == "exact-fit" {
+        let rewarded = (0..shown).filter(|&row| {
+            let sharp = report.table.field(row, "sharp");
+            sharp.is_some_and(|sharp| sharp.parse().is_ok_and(|sharp: f64| sharp > 0.0))
+        });
+        let ranks: Vec<String> = rewarded
+            .map(|row| report.table.rows()[row].rank.to_string())
+            .collect();
+        if !ranks.is_empty() {
+            sentences.push(format!(
+                "A fit at atomic resolution stands out and earns score for {} {}.",
+                if ranks.len() == 1 { "rank" } else { "ranks" },
+                listed(ranks.iter().map(String::as_str))
+            ));
+        }
+    }
+    for (index, side) in ["receptor", "ligand"].into_iter().enumerate() {
+        let residues: Vec<String> = active(report, index)
+            .into_iter()
+            .map(String::from)
+            .collect();
+        if !residues.is_empty() {
+            sentences.push(format!(
+                "Poses that touch residues {} of the {side} rank higher.",
+                residues.join(", ")
+            ));
+        }
+    }
+    sentences.push(found(report, shown));
+    let words: String = sentences
+        .iter()
+        .map(|sentence| escaped(sentence) + " ")
+        .collect();
+    let mut html = format!("<p>{}</p>\n", words.trim_end());
+    html += &warnings(record);
+    html
+}
+
+/// What a known complex says of the rows.
+fn found(report: &RunReport, shown: usize) -> String {
+    let is_good = |row: &usize| {
+        let class = report.table.field(*row, "capri");
+        class.is_some_and(|class| class != "incorrect")
+    };
+    let good: Vec<usize> = (0..shown).filter(is_good).collect();
+    let has_native = shown > 0 && report.table.field(0, "capri").is_some();
+    match (has_native, good.first()) {
+        (false, _) => "No known complex was given, so that nothing here says which pose is right: look at the best \
+                       clusters, not at the first alone."
+            .to_owned(),
+        (true, None) => "By the known complex no row is acceptable or better.".to_owned(),
+        (true, Some(&first)) => format!(
+            "By the known complex the first acceptable row has rank {}, and {} of the first ten rows {} acceptable or better.",
+            report.table.rows()[first].rank,
+            good.iter().filter(|&&row| row < 10).count(),
+            match good.iter().filter(|&&row| row < 10).count() {
+                1 => "is",
+                _ => "are",
+            }
+        ),
+    }
+}
+
+/// Warnings of the readers.
+fn warnings(record: &Value) -> String {
+    let mut items = String::new();
+    for side in ["receptor", "ligand"] {
+        let warnings = record["inputs"][side]["report"]["warnings"].as_array();
+        for warning in warnings.into_iter().flatten().filter_map(Value::as_str) {
+            let _ = writeln!(items, "<li>{}: {}</li>", capital(side), escaped(warning));
+        }
+    }
+    match items.is_empty() {
+        true => items,
+        false => format!("<ul class=\"warnings\">\n{items}</ul>\n"),
+    }
+}
+
+fn capital(word: &str) -> String {
+    let mut letters = word.chars();
+    let first = letters.next().map(|letter| letter.to_ascii_uppercase());
+    first.into_iter().chain(letters).collect()
+}

@@ -1,0 +1,80 @@
+//! Reports of solids: one stands and another moves through a table of poses, or two sets bound a result.
+
+use csv::StringRecord;
+use knotdock_scoring::se3::Pose;
+use serde_json::{Value, json};
+
+use crate::report::MAX_ROWS;
+use crate::report::columns::of_table;
+use crate::report::html::{Page, escaped, section};
+use crate::report::shown::{LACKING, placement, rows, solid};
+use crate::report::viewer::Viewer;
+use knotdock::output::files::assemblies::Surface;
+
+/// Two solids to look at.
+pub struct SolidsReport<'a> {
+    /// Title of the page.
+    pub title: String,
+    /// What is said of them.
+    pub sentences: Vec<String>,
+    /// What the two are called.
+    pub names: [&'a str; 2],
+    /// Their surfaces, each in the frame of its file.
+    pub surfaces: [Surface<'a>; 2],
+    /// Caption of the table.
+    pub caption: &'a str,
+    /// Names of its columns.
+    pub header: StringRecord,
+    /// Its rows.
+    pub records: Vec<StringRecord>,
+    /// Columns that are shown at first.
+    pub main: &'a [&'a str],
+    /// Where the second solid is in each row.
+    pub poses: &'a [Pose],
+}
+
+impl SolidsReport<'_> {
+    /// The page, whole. Without a viewer it says how to get the view.
+    pub fn text(mut self, viewer: Option<&Viewer>) -> String {
+        let all = self.records.len();
+        assert_eq!(all, self.poses.len(), "a pose a row");
+        if all > MAX_ROWS {
+            self.sentences.push(format!(
+                "This report shows the first {MAX_ROWS} of {all} rows."
+            ));
+            self.records.truncate(MAX_ROWS);
+        }
+        let columns = of_table(&self.header, &self.records, self.main);
+        let rows = rows(&columns, &self.records);
+        let placed = self.poses.iter().take(MAX_ROWS);
+        let data = json!({
+            "kind": "solids",
+            "caption": self.caption,
+            "sides": self.names,
+            "columns": columns,
+            "rows": rows,
+            "placed": placed.map(|pose| [placement(pose)]).collect::<Vec<_>>(),
+            "bodies": self.surfaces.iter().map(solid).collect::<Value>(),
+        });
+        let sentences = self
+            .sentences
+            .iter()
+            .map(|sentence| escaped(sentence) + " ");
+        let words = format!("<p>{}</p>\n", sentences.collect::<String>().trim_end());
+        let lacking = match viewer {
+            Some(_) => "",
+            None => LACKING,
+        };
+        let explorer = include_str!("page/solids.html").replace("{{lacking}}", lacking);
+        Page {
+            title: self.title,
+            sections: vec![
+                section("summary", "Summary", &words),
+                section("poses", "Results", &explorer),
+            ],
+            data: &data,
+            viewer,
+        }
+        .text()
+    }
+}

@@ -1,0 +1,83 @@
+//! The library of the three-dimensional view: 3Dmol.js (Rego and Koes, Bioinformatics 31 (2015) 1322-1324), as npm has it.
+
+use std::io;
+use std::path::{Path, PathBuf};
+use std::sync::OnceLock;
+
+use crate::report::packed::packed;
+use knotdock::bounded_read::read_bounded;
+
+/// Most bytes of a file of the library.
+const MAX_BYTES: u64 = 4 << 20;
+
+/// The library, packed, with its licence.
+#[derive(Clone, Debug)]
+pub struct Viewer {
+    pub(super) packed: String,
+    pub(super) licence: String,
+}
+
+/// Why a folder does not hold the library.
+#[derive(Debug, thiserror::Error)]
+#[error("cannot read {}: {source}", path.display())]
+pub struct ViewerError {
+    /// The file.
+    pub path: PathBuf,
+    /// The system's message.
+    pub source: io::Error,
+}
+
+impl ViewerError {
+    /// Remedy for the user.
+    pub fn remedy(&self) -> &'static str {
+        "name the folder of npm's package 3dmol: `npm install 3dmol` puts it into node_modules/3dmol"
+    }
+}
+
+impl Viewer {
+    fn of(script: &str, licence: &str) -> Self {
+        Self {
+            packed: packed(script.as_bytes()),
+            licence: licence.to_owned(),
+        }
+    }
+
+    /// The library that this program was built with, if it was.
+    pub fn embedded() -> Option<&'static Self> {
+        static EMBEDDED: OnceLock<Option<Viewer>> = OnceLock::new();
+        EMBEDDED.get_or_init(embedded).as_ref()
+    }
+
+    /// The library in the folder of npm's package.
+    ///
+    /// # Errors
+    /// [`ViewerError`] where one of its files cannot be read.
+    pub fn read(package: &Path) -> Result<Self, ViewerError> {
+        let text = |name: &str| {
+            let path = package.join(name);
+            let bytes = read_bounded(&path, MAX_BYTES).and_then(|bytes| {
+                String::from_utf8(bytes).map_err(|error| io::Error::other(error.utf8_error()))
+            });
+            bytes.map_err(|source| ViewerError { path, source })
+        };
+        Ok(Self::of(&text("build/3Dmol-min.js")?, &text("LICENSE")?))
+    }
+}
+
+#[cfg(feature = "viewer")]
+fn embedded() -> Option<Viewer> {
+    let script = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../viewer/node_modules/3dmol/build/3Dmol-min.js"
+    ));
+    let licence = include_str!(concat!(
+        env!("CARGO_MANIFEST_DIR"),
+        "/../viewer/node_modules/3dmol/LICENSE"
+    ));
+    Some(Viewer::of(script, licence))
+}
+
+#[cfg(not(feature = "viewer"))]
+fn embedded() -> Option<Viewer> {
+    None
+}

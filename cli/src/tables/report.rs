@@ -1,0 +1,223 @@
+//! The tables of the terminal.
+
+use serde_json::Value;
+
+use knotdock::output::tables::fields::Column;
+use knotdock::output::tables::poses::PoseTable;
+use knotdock::rank::ranking::RankedPose;
+
+/// Rows of the table of best clusters.
+pub const BEST: usize = 10;
+
+/// The best clusters as a table: rank, score, size of the cluster, pose score and z-score of its best pose, and
+/// whatever columns are appended to the poses.
+///
+/// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
+pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
+    let header = ["rank", "score", "size", "pose score", "z-score"];
+    let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
+    header.extend(appended.iter().map(|column| column.name.clone()));
+    let mut lines = vec![header];
+    for index in firsts(ranking).into_iter().take(BEST) {
+        let Some(row) = ranking.get(index) else {
+            continue;
+        };
+        let tenths =
+            |value: Option<f64>| value.map(|value| format!("{value:.1}")).unwrap_or_default();
+        let size = row.cluster_size.map(|size| size.to_string());
+        let mut line = vec![
+            (index + 1).to_string(),
+            tenths(Some(row.score)),
+            size.unwrap_or_default(),
+            tenths(Some(row.pose_score)),
+            tenths(row.z_score),
+        ];
+        line.extend(appended.iter().map(|column| {
+            let field = column.fields.get(index).map_or("", String::as_str);
+            // A column of counts has none but whole numbers.
+            let is_count = column
+                .fields
+                .iter()
+                .all(|field| field.parse::<u64>().is_ok());
+            match field.parse::<f64>() {
+                Ok(value) if !is_count => format!("{value:.2}"),
+                Ok(_) => field.to_owned(),
+                Err(_) => field.to_owned(),
+            }
+        }));
+        lines.push(line);
+    }
+    align(&lines)
+}
+
+/// Columns of a table of an ensemble's poses that the terminal shows, where the table has them.
+const OF_ENSEMBLES: [&str; 13] = [
+    "rank",
+    "score",
+    "cluster_size",
+    "receptor_model",
+    "ligand_model",
+    "pose_score",
+    "z_score",
+    "restraints_met",
+    "irmsd",
+    "lrmsd",
+    "fnat",
+    "dockq",
+    "capri",
+];
+
+/// The first of these rows of a table that joins runs, with its main columns.
+pub fn best_rows(table: &PoseTable, rows: Vec<usize>) -> String {
+    let has = |name: &&str| table.header.iter().any(|column| column == *name);
+    let columns: Vec<&str> = OF_ENSEMBLES.into_iter().filter(has).collect();
+    let heading = |name: &&str| match *name {
+        "cluster_size" => "size".to_owned(),
+        "receptor_model" => "rec".to_owned(),
+        "ligand_model" => "lig".to_owned(),
+        "z_score" => "z-score".to_owned(),
+        name => name.replace('_', " "),
+    };
+    let mut lines = vec![columns.iter().map(heading).collect()];
+    for row in table.objects(rows.into_iter().take(BEST)) {
+        let field = |name: &&str| match (&row[*name], *name) {
+            (Value::Null, _) => String::new(),
+            (Value::String(text), _) => text.clone(),
+            (value, "score" | "pose_score" | "z_score") => value
+                .as_f64()
+                .map_or_else(String::new, |value| format!("{value:.1}")),
+            (value, "irmsd" | "lrmsd" | "fnat" | "dockq") => value
+                .as_f64()
+                .map_or_else(String::new, |value| format!("{value:.2}")),
+            (value, _) => value.to_string(),
+        };
+        lines.push(columns.iter().map(field).collect());
+    }
+    align(&lines)
+}
+
+/// Places of the poses that stand for their clusters: the first of each, and each pose that belongs to none.
+pub fn firsts(ranking: &[RankedPose]) -> Vec<usize> {
+    let mut seen = std::collections::HashSet::new();
+    let mut firsts: Vec<usize> = (0..ranking.len())
+        .filter(|&index| {
+            ranking[index]
+                .cluster
+                .is_none_or(|cluster| seen.insert(cluster))
+        })
+        .collect();
+    firsts.sort_by_key(|&index| ranking[index].cluster.unwrap_or(usize::MAX));
+    firsts
+}
+
+/// A number of things, in the singular for one.
+pub fn counted(number: usize, thing: &str) -> String {
+    match number {
+        1 => format!("1 {thing}"),
+        _ => format!("{number} {thing}s"),
+    }
+}
+
+/// Lines of fields as text, each column flush right.
+pub fn align(lines: &[Vec<String>]) -> String {
+    let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
+    let width = |column: usize| {
+        lines
+            .iter()
+            .filter_map(|line| line.get(column))
+            .map(|field| field.chars().count())
+            .max()
+            .unwrap_or(0)
+    };
+    let widths: Vec<usize> = (0..columns).map(width).collect();
+    let text: Vec<String> = lines
+        .iter()
+        .map(|line| {
+            let fields = line.iter().zip(&widths);
+            let line: String = fields
+                .map(|(field, &width)| format!("  {field:>width$}"))
+                .collect();
+            line.trim_end().to_owned()
+        })
+        .collect();
+    text.join("\n")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_scoring::se3::Pose;
+    use knotdock_scoring::terms::pose::TermValues;
+
+    fn pose(score: f64, cluster: Option<usize>) -> RankedPose {
+        RankedPose {
+            pose: Pose::identity(),
+            score,
+            search_score: score,
+            cluster,
+            cluster_score: None,
+            cluster_size: cluster.map(|_| 2),
+            refined: false,
+            sharp: None,
+            rotation: 0,
+            score_grid: score,
+            terms: [Some(score), None, None, None],
+            shape: None,
+            pose_terms: TermValues::default(),
+            other_copies: None,
+            pose_score: score,
+            z_score: None,
+        }
+    }
+
+    #[test]
+    fn one_row_a_cluster_under_the_rank_of_its_best_pose() {
+        let ranking = [
+            pose(9.0, Some(1)),
+            pose(8.0, Some(1)),
+            pose(7.0, None),
+            pose(6.0, Some(2)),
+            pose(5.0, None),
+            pose(4.0, Some(2)),
+        ];
+        // In the order of the clusters; what belongs to none comes last.
+        assert_eq!(firsts(&ranking), [0, 3, 2, 4]);
+        let irmsd = Column {
+            name: "irmsd".to_owned(),
+            fields: ["1.234", "", "", "3.5"].map(str::to_owned).to_vec(),
+        };
+        let met = Column {
+            name: "met".to_owned(),
+            fields: ["3", "0", "1", "2", "3", "0"].map(str::to_owned).to_vec(),
+        };
+        assert!(
+            best_clusters(&ranking, &[met]).contains("   4    6.0     2         6.0             2")
+        );
+        assert_eq!(
+            best_clusters(&ranking, &[irmsd]),
+            "  rank  score  size  pose score  z-score  irmsd\n\
+             \x20    1    9.0     2         9.0            1.23\n\
+             \x20    4    6.0     2         6.0            3.50\n\
+             \x20    3    7.0               7.0\n\
+             \x20    5    5.0               5.0"
+        );
+    }
+
+    /// Clusters are ordered by their own scores, not by those of their best poses: without the first the order looked
+    /// wrong.
+    #[test]
+    fn clusters_show_the_score_that_orders_them() {
+        let in_company = |score: f64, cluster, cluster_score: f64| RankedPose {
+            score: cluster_score,
+            pose_score: score,
+            ..pose(score, Some(cluster))
+        };
+        let ranking = [in_company(8.0, 1, 11.0), in_company(9.0, 2, 10.0)];
+        assert_eq!(
+            best_clusters(&ranking, &[]),
+            "  rank  score  size  pose score  z-score\n\
+             \x20    1   11.0     2         8.0\n\
+             \x20    2   10.0     2         9.0"
+        );
+    }
+}

@@ -1,0 +1,106 @@
+//! The setting for an accuracy that is wanted or a time that may be spent.
+
+use std::time::Instant;
+
+use crate::tradeoff::cost_model::{CostModel, LADDER, Rung, Workload};
+use knotdock::dock::pair::{PairError, Preparer};
+use knotdock::dock::plan::DockPlan;
+use knotdock::options::DockOptions;
+use knotdock::output::records::manifest::Chosen;
+use knotdock::search::deadline::Deadline;
+
+/// Fewest rotations that a docking within a budget takes: below, an answer is a matter of luck.
+pub const MIN_ROTATIONS: usize = 600;
+/// Most: 6 degrees, beyond which rotations cost time and find nothing.
+pub const MAX_ROTATIONS: usize = 56_250;
+/// So many times as fast as the cost model has it a machine may be and still use all of a budget.
+const FASTEST: f64 = 4.0;
+
+/// Requested accuracy and time of a run.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wanted {
+    /// Error of the fast path, rms over the best grid poses, as a share of the best score.
+    pub accuracy: Option<f64>,
+    /// Seconds on the clock.
+    pub budget: Option<f64>,
+}
+
+/// Why nothing can be chosen.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ChoiceError {
+    /// The pair cannot be docked so.
+    #[error(transparent)]
+    Pair(#[from] PairError),
+    /// More accuracy than there is.
+    #[error("no setting is expected to bring the error down to {wanted:e}; the least is {least:e}")]
+    Accuracy {
+        /// The requested error.
+        wanted: f64,
+        /// The least error.
+        least: f64,
+    },
+}
+
+impl ChoiceError {
+    /// Remedy for the user.
+    pub fn remedy(&self) -> String {
+        match self {
+            Self::Pair(error) => error.remedy(),
+            Self::Accuracy { least, .. } => format!("ask for an accuracy of {least:e} or more"),
+        }
+    }
+}
+
+/// The deadline of a planned run that is to end at `end`, by what the model expects it to take.
+pub fn deadline(plan: &DockPlan, end: Instant) -> Deadline {
+    let (model, work) = (CostModel::BUILT_IN, Workload::of(plan));
+    let threads = plan.in_flight();
+    let rotation = model.rotation_seconds(&work) / threads as f64;
+    Deadline::new(end, rotation, move |rotations| {
+        model.seconds_after_search(&work, rotations, threads)
+    })
+}
+
+/// Chooses tolerance and spacing by the accuracy, then rotations by the budget, into `options`.
+///
+/// # Errors
+/// [`ChoiceError`].
+pub fn choose(
+    wanted: Wanted,
+    options: &mut DockOptions,
+    preparer: &mut Preparer,
+) -> Result<Chosen, ChoiceError> {
+    let mut predicted_error = None;
+    if let Some(accuracy) = wanted.accuracy {
+        let least = LADDER
+            .iter()
+            .fold(f64::INFINITY, |least, rung| least.min(rung.error));
+        let rung = Rung::within(accuracy).ok_or(ChoiceError::Accuracy {
+            wanted: accuracy,
+            least,
+        })?;
+        rung.apply(options);
+        predicted_error = Some(rung.error);
+    }
+    // The rotations are left open: few are quickly planned.
+    let draft = preparer.prepare(&options.changed(|options| options.search.rotations = 4))?;
+    let work = Workload::of(&draft.plan);
+    let threads = draft.plan.most_in_flight();
+    let model = CostModel::BUILT_IN;
+    let mut expected = f64::INFINITY;
+    if let Some(budget) = wanted.budget {
+        let most = options.search.fine_rotations.unwrap_or(MAX_ROTATIONS);
+        let range = MIN_ROTATIONS..=most.clamp(MIN_ROTATIONS, MAX_ROTATIONS);
+        // The deadline ends the search. What it has searched by then is nearly as even as a set of that size.
+        options.search.rotations = model.rotations_within(&work, FASTEST * budget, threads, range);
+        expected = budget;
+    }
+    Ok(Chosen {
+        accuracy: wanted.accuracy,
+        budget_seconds: wanted.budget,
+        predicted_seconds: model
+            .seconds(&work, options.search.rotations, threads)
+            .min(expected),
+        predicted_error,
+    })
+}

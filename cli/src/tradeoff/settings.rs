@@ -1,0 +1,468 @@
+//! The settings of a sweep: each parameter on its own around a default, and combinations.
+
+use crate::tradeoff::change::{Change, rounded_to_fours, three_digits};
+use clap::ValueEnum;
+use knotdock::error::SearchError;
+use knotdock::options::DockOptions;
+use knotdock::options::definition::{Definition, Scope};
+use knotdock::options::{MAX_PER_AXIS, check::name_of};
+use knotdock::options::{SampleGrid, option_named};
+use serde::Serialize;
+
+/// Change of the default that a setting makes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Parameter {
+    /// Nothing.
+    Default,
+    /// What agreement is measured by: the default with the most rotations of the sweep.
+    Reference,
+    /// The default at a few rotations more or fewer, which differs from it by noise alone.
+    Repeat,
+    /// The option of this name.
+    Option(&'static str),
+    /// Several at once.
+    Combination,
+}
+
+/// An option that a sweep moves.
+struct Swept {
+    option: &'static str,
+    /// Its values around a default, each with what goes along with it.
+    values: fn(&DockOptions, Planned) -> Vec<Vec<Change>>,
+}
+
+/// The options that a sweep moves, in its order.
+const SWEPT: [Swept; 9] = [
+    // From it follow the rank of the lifted axis, the spreading width, the kernel's window and the spacing.
+    Swept {
+        option: "tolerance",
+        values: |_, _| each("tolerance", [0.1, 3e-2, 1e-2, 1e-3]),
+    },
+    Swept {
+        option: "precision",
+        values: |_, _| {
+            let precisions = knotdock::options::Precision::value_variants();
+            each("precision", precisions.iter().map(|&one| name_of(one)))
+        },
+    },
+    // And so the modes kept.
+    Swept {
+        option: "spacing",
+        values: |_, planned| {
+            let spacings = [1.15, 0.85, 0.7].map(|factor| spacing(planned, factor));
+            spacings.map(|change| vec![change]).into()
+        },
+    },
+    // And with it the spacing: another score rather than a better or worse one.
+    Swept {
+        option: "resolution",
+        values: |default, _| {
+            let factors = [7.0 / 9.0, 11.0 / 9.0, 4.0 / 3.0];
+            factors.map(|factor| resolution(default, factor)).into()
+        },
+    },
+    Swept {
+        option: "rotations",
+        values: |default, _| {
+            let factors = [1.0 / 6.0, 1.0 / 3.0, 2.0];
+            let counts = factors.map(|factor| rotations(default, factor));
+            counts.map(|change| vec![change]).into()
+        },
+    },
+    Swept {
+        option: "fine_rotations",
+        values: |default, _| {
+            let finer = |factor| rounded_to_fours(factor * default.search.rotations as f64);
+            each("fine_rotations", [4.0, 16.0].map(finer))
+        },
+    },
+    Swept {
+        option: "per_rotation",
+        values: |_, _| each("per_rotation", [1, 10]),
+    },
+    Swept {
+        option: "refine",
+        values: |_, planned| {
+            let poses = [0, 300].into_iter();
+            each("refine", poses.filter(|&poses| poses != planned.refined))
+        },
+    },
+    // Molecules are balls as they come.
+    Swept {
+        option: "sample_grid",
+        values: |default, _| {
+            let finer = |grid: SampleGrid, factor: f64| {
+                let nodes = (grid.per_axis as f64 * factor).round() as usize;
+                let per_axis = nodes.min(MAX_PER_AXIS);
+                SampleGrid { per_axis }
+            };
+            default.sampling.sample_grid.map_or_else(Vec::new, |grid| {
+                each("sample_grid", [0.75, 1.5].map(|factor| finer(grid, factor)))
+            })
+        },
+    },
+];
+
+/// A change of an option to each of some values.
+fn each(option: &'static str, values: impl IntoIterator<Item = impl ToString>) -> Vec<Vec<Change>> {
+    let values = values.into_iter();
+    values
+        .map(|value| vec![Change::new(option, value)])
+        .collect()
+}
+
+/// So many times the default's rotations.
+fn rotations(default: &DockOptions, factor: f64) -> Change {
+    let rotations = rounded_to_fours(factor * default.search.rotations as f64);
+    Change::new("rotations", rotations)
+}
+
+/// So many times the planned spacing.
+fn spacing(planned: Planned, factor: f64) -> Change {
+    Change::new("spacing", three_digits(factor * planned.spacing))
+}
+
+/// So many times the default's resolution; a spacing that was given goes along.
+fn resolution(default: &DockOptions, factor: f64) -> Vec<Change> {
+    let kernel = &default.kernel;
+    let resolution = three_digits(factor * kernel.resolution);
+    let mut changes = vec![Change::new("resolution", resolution)];
+    if let Some(spacing) = kernel.spacing {
+        changes.push(Change::new("spacing", three_digits(factor * spacing)));
+    }
+    changes
+}
+
+/// Several changes at once, each with the setting's name.
+fn combinations(default: &DockOptions, planned: Planned) -> [(&'static str, Vec<Change>); 3] {
+    let tolerance = |value: f64| Change::new("tolerance", value);
+    let mut coarsest = resolution(default, 4.0 / 3.0);
+    coarsest.extend([
+        rotations(default, 1.0 / 6.0),
+        tolerance(0.1),
+        Change::new("per_rotation", 1),
+    ]);
+    let coarse = vec![rotations(default, 1.0 / 3.0), tolerance(3e-2)];
+    let fine = vec![
+        rotations(default, 2.0),
+        tolerance(1e-3),
+        spacing(planned, 0.85),
+    ];
+    [("coarsest", coarsest), ("coarse", coarse), ("fine", fine)]
+}
+
+impl Parameter {
+    /// The parameters that a sweep can be limited to.
+    pub fn all() -> Vec<Self> {
+        let options = SWEPT.iter().map(|swept| Self::Option(swept.option));
+        options.chain([Self::Combination]).collect()
+    }
+
+    /// Whether settings of it are for taking: the reference and repeats only measure others.
+    pub fn is_choice(self) -> bool {
+        !matches!(self, Self::Reference | Self::Repeat)
+    }
+
+    /// Name as on the command line and in the table.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Default => "default",
+            Self::Reference => "reference",
+            Self::Repeat => "repeat",
+            Self::Option(name) => option_named(name).map_or(name, Definition::long),
+            Self::Combination => "combination",
+        }
+    }
+}
+
+impl Parameter {
+    /// The inputs that it has an effect on.
+    pub fn scope(self) -> Scope {
+        match self {
+            Self::Option(name) => option_named(name).map_or(Scope::Both, Definition::scope),
+            _ => Scope::Both,
+        }
+    }
+}
+
+impl std::str::FromStr for Parameter {
+    type Err = String;
+
+    fn from_str(text: &str) -> Result<Self, String> {
+        let known = Self::all().into_iter().find(|known| known.name() == text);
+        known.ok_or_else(|| {
+            let names: Vec<&str> = Self::all().into_iter().map(Self::name).collect();
+            let names = names.join(", ");
+            format!("there is no parameter '{text}'; there are {names}")
+        })
+    }
+}
+
+/// One setting of a sweep.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Setting {
+    /// What it is called.
+    pub name: String,
+    /// What it changes.
+    pub parameter: Parameter,
+    /// The options of `knotdock dock` that it changes, as they are typed in place of the default's; empty for the
+    /// default.
+    pub arguments: String,
+    /// All options.
+    pub options: DockOptions,
+}
+
+/// A setting that could not be run.
+#[derive(Clone, Debug, Serialize)]
+pub struct Refused {
+    /// Its name.
+    pub setting: String,
+    /// Why.
+    pub reason: String,
+}
+
+impl Refused {
+    /// A setting that ended in an error.
+    pub(crate) fn new(setting: &Setting, error: impl std::fmt::Display) -> Self {
+        Self {
+            setting: setting.name.clone(),
+            reason: error.to_string(),
+        }
+    }
+}
+
+/// What changes are typed as, without dashes.
+fn typed(changes: &[Change]) -> String {
+    let typed: Vec<String> = changes.iter().map(Change::argument).collect();
+    typed.join(" ").replace("--", "")
+}
+
+impl Setting {
+    /// Whether a sweep means nothing without it.
+    pub(crate) fn is_needed(&self) -> bool {
+        matches!(self.parameter, Parameter::Default | Parameter::Reference)
+    }
+
+    /// The default with some changes.
+    fn new(
+        parameter: Parameter,
+        name: &str,
+        changes: &[Change],
+        default: &DockOptions,
+    ) -> Result<Self, SearchError> {
+        let mut options = default.clone();
+        for change in changes {
+            options = change.apply(&options)?;
+        }
+        let arguments = changes
+            .iter()
+            .map(|change| change.argument() + &change.companions(default, &options));
+        Ok(Self {
+            name: name.to_owned(),
+            parameter,
+            arguments: arguments.collect::<Vec<_>>().join(" "),
+            options,
+        })
+    }
+}
+
+/// Rotations of the reference, as a multiple of the default's.
+const REFERENCE_ROTATIONS: usize = 4;
+
+/// What a default comes to where its options leave it open.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Planned {
+    /// Grid spacing.
+    pub spacing: f64,
+    /// Poses refined.
+    pub refined: usize,
+}
+
+/// The settings of a sweep of `parameters` around `default`, which comes first, and the reference second; and
+/// settings out of range. Of the two repeats one is the third and one the last, so that they show a drift of the
+/// machine's speed, too.
+///
+/// # Errors
+/// [`SearchError::Option`] when the reference is out of range.
+pub fn settings(
+    default: &DockOptions,
+    planned: Planned,
+    parameters: &[Parameter],
+) -> Result<(Vec<Setting>, Vec<Refused>), SearchError> {
+    let count = default.search.rotations;
+    let with = |parameter, name, rotations| {
+        let change = Change::new("rotations", rotations);
+        Setting::new(parameter, name, &[change], default)
+    };
+    let fewer = count.checked_sub(4).filter(|&fewer| fewer > 0);
+    let last = with(Parameter::Repeat, "repeat 2", fewer.unwrap_or(count + 8))?;
+    let mut settings = vec![
+        Setting::new(Parameter::Default, "default", &[], default)?,
+        with(
+            Parameter::Reference,
+            "reference",
+            REFERENCE_ROTATIONS * count,
+        )?,
+        with(Parameter::Repeat, "repeat 1", count + 4)?,
+    ];
+    let mut refused = Vec::new();
+    let mut add = |parameter, name: &str, changes: &[Change]| {
+        if !parameters.contains(&parameter) {
+            return;
+        }
+        match Setting::new(parameter, name, changes, default) {
+            Ok(new) if settings.iter().any(|known| known.options == new.options) => {}
+            Ok(new) => settings.push(new),
+            Err(error) => refused.push(Refused {
+                setting: name.to_owned(),
+                reason: error.to_string(),
+            }),
+        }
+    };
+    for swept in &SWEPT {
+        for changes in (swept.values)(default, planned) {
+            add(Parameter::Option(swept.option), &typed(&changes), &changes);
+        }
+    }
+    for (name, changes) in combinations(default, planned) {
+        add(Parameter::Combination, name, &changes);
+    }
+    if settings.iter().all(|known| known.options != last.options) {
+        settings.push(last);
+    }
+    Ok((settings, refused))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn swept(default: &DockOptions) -> Vec<Setting> {
+        let planned = Planned {
+            spacing: 2.25,
+            refined: 0,
+        };
+        settings(default, planned, &Parameter::all()).unwrap().0
+    }
+
+    #[test]
+    fn every_setting_is_another_and_says_how_to_have_it() {
+        let settings = swept(&DockOptions::default());
+        assert_eq!(settings[0].name, "default");
+        assert_eq!(settings[1].name, "reference");
+        let repeats = settings.iter().enumerate();
+        let repeats = repeats.filter(|(_, setting)| setting.parameter == Parameter::Repeat);
+        let rotations: Vec<_> = repeats
+            .map(|(index, setting)| (index, setting.options.search.rotations))
+            .collect();
+        assert_eq!(rotations, [(2, 3604), (settings.len() - 1, 3596)]);
+        for (index, setting) in settings.iter().enumerate() {
+            assert_eq!(setting.arguments.is_empty(), index == 0);
+            let same = |other: &Setting| other.options == setting.options;
+            assert!(!settings[..index].iter().any(same), "{}", setting.name);
+        }
+        let named = |name: &str| settings.iter().find(|setting| setting.name == name);
+        assert_eq!(
+            named("resolution 3.5").unwrap().options.kernel.spacing,
+            None
+        );
+        assert_eq!(
+            named("rotations 600").unwrap().options.search.rotations,
+            600
+        );
+        assert!(named("tolerance 0.01").is_none(), "that is the default");
+        assert!(
+            settings
+                .iter()
+                .all(|s| s.parameter != Parameter::Option("sample_grid"))
+        );
+    }
+
+    /// Each name of a parameter is one of an option's.
+    #[test]
+    fn what_is_swept_is_an_option() {
+        for parameter in Parameter::all() {
+            if let Parameter::Option(name) = parameter {
+                assert!(option_named(name).is_some(), "{name}");
+            }
+            assert_eq!(parameter.name().parse(), Ok(parameter));
+        }
+        assert!("skill".parse::<Parameter>().is_err());
+    }
+
+    /// A value that no option can have is left out, and a reference that there cannot be is an error.
+    #[test]
+    fn settings_out_of_range_are_refused() {
+        let planned = Planned {
+            spacing: 2.25,
+            refined: 0,
+        };
+        let of = |rotations| {
+            let default =
+                DockOptions::default().changed(|options| options.search.rotations = rotations);
+            settings(&default, planned, &Parameter::all())
+        };
+        let (_, refused) = of(2_000_000).unwrap();
+        assert_eq!(refused[0].setting, "fine-rotations 32000000");
+        assert!(of(9_000_000).is_err());
+    }
+
+    /// What is typed for a setting is all that it changes.
+    #[test]
+    fn arguments_name_what_else_changes() {
+        let settings = swept(&DockOptions::default().changed(|options| {
+            options.kernel.pass_length = Some(9.0);
+            options.search.fine_rotations = Some(7200);
+        }));
+        let typed = |name: &str| {
+            let mut all = settings.iter();
+            all.find(|s| s.name == name).unwrap().arguments.clone()
+        };
+        assert_eq!(typed("resolution 3.5"), "--resolution 3.5 --pass-length 7");
+        assert_eq!(
+            typed("reference"),
+            "--rotations 14400 --fine-rotations 14400"
+        );
+        assert_eq!(typed("rotations 7200"), "--rotations 7200");
+    }
+
+    /// Precision moves to the one that the default does not have.
+    #[test]
+    fn precision_moves_either_way() {
+        for (default, other) in [("single", "double"), ("double", "single")] {
+            let settings = swept(&DockOptions::default().with("precision", default).unwrap());
+            let moved = settings
+                .iter()
+                .filter(|s| s.parameter == Parameter::Option("precision"));
+            let moved: Vec<&str> = moved.map(|s| s.arguments.as_str()).collect();
+            assert_eq!(moved, [format!("--precision {other}")]);
+        }
+    }
+
+    #[test]
+    fn given_lengths_go_along_with_the_resolution_and_meshes_have_a_grid() {
+        let settings = swept(&DockOptions::default().changed(|options| {
+            options.kernel.spacing = Some(2.0);
+            options.kernel.pass_length = Some(9.0);
+            options.sampling.sample_grid = Some(SampleGrid { per_axis: 64 });
+            options.kernel.resolution = 4.5;
+        }));
+        let finer = settings
+            .iter()
+            .find(|s| s.parameter == Parameter::Option("resolution"))
+            .unwrap();
+        assert_eq!(
+            finer.arguments,
+            "--resolution 3.5 --pass-length 7 --spacing 1.56"
+        );
+        assert_eq!(finer.options.kernel.pass_length, Some(7.0));
+        let grids = settings
+            .iter()
+            .filter(|s| s.parameter == Parameter::Option("sample_grid"));
+        let grids: Vec<_> = grids.map(|s| s.options.sampling.sample_grid).collect();
+        assert_eq!(
+            grids,
+            [48, 96].map(|per_axis| Some(SampleGrid { per_axis }))
+        );
+    }
+}
