@@ -32,7 +32,7 @@
 pub mod bounded_read;
 pub mod dock;
 pub mod ensemble;
-pub mod error;
+mod error;
 pub mod evaluate;
 pub mod geometry;
 pub mod interface;
@@ -56,3 +56,5 @@ pub mod table_text;
 #[cfg(test)]
 mod test_molecules;
 pub mod threads;
+
+pub use knotdock_structures::Error;

@@ -2,7 +2,8 @@
 
 use crate::dock::outcome::error_scale;
 use crate::dock::scene::Scene;
-use crate::error::SearchError;
+use crate::error::{COARSER, no_pose};
+use crate::memory_size::in_words;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -11,6 +12,7 @@ use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::truncation::{ModeOrder, Selection, rms_left_out, total};
 use knotdock_scoring::truncated::TruncatedCorrelation;
+use knotdock_structures::Error;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use rayon::prelude::*;
@@ -124,15 +126,15 @@ pub struct PoseScore {
 /// Scores one pose.
 ///
 /// # Errors
-/// [`SearchError`] on knots or options that cannot be used.
-pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseScore, SearchError> {
+/// [`Error`] on knots or options that cannot be used.
+pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseScore, Error> {
     let (receptor, ligand) = (&scene.receptor, &scene.ligand);
     let plan = plan(scene, options)?;
     let scorer = ExactSum::of(&plan, receptor, ligand)?;
     let exact = scorer.score(pose);
     let whole = correlations(&plan, receptor, ligand);
     let [(spectra, first), by_offset @ ..] = whole.as_slice() else {
-        return Err(SearchError::NoPose);
+        return Err(no_pose());
     };
     let mut work = first.workspace();
     let magnitudes = first
@@ -222,8 +224,8 @@ fn correlations(
 /// The plan whose modes are accurate enough for a ladder.
 ///
 /// # Errors
-/// [`SearchError`] on knots or options that cannot be used, and when all modes take more memory than is allowed.
-fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Arc<Plan>, SearchError> {
+/// [`Error`] on knots or options that cannot be used, and when all modes take more memory than is allowed.
+fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Arc<Plan>, Error> {
     let kernel_tolerance = options.engine.tolerance;
     let fine = EngineOptions {
         tolerance: kernel_tolerance.min(MODE_TOLERANCE),
@@ -233,11 +235,13 @@ fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Arc<Plan>, SearchError>
     let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
     let needed = bytes_a_mode * plan.modes().count as u64;
     match options.memory.filter(|&allowed| needed > allowed) {
-        Some(allowed) => Err(SearchError::Modes {
-            modes: plan.modes().count,
-            needed,
-            allowed,
-        }),
+        Some(allowed) => Err(Error::input(format!(
+            "{} modes need {} of memory, and {} are allowed",
+            plan.modes().count,
+            in_words(needed),
+            in_words(allowed)
+        ))
+        .help(COARSER)),
         None => Ok(Arc::new(plan)),
     }
 }

@@ -7,36 +7,30 @@
 /// It takes memory only as far as it is used.
 const STACK: usize = 8 << 20;
 
-/// Why work was not done: its threads could not be started.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("the system could not start {}: {message}", counted(*count))]
-pub struct ThreadsError {
-    /// Threads that were wanted.
-    count: usize,
-    /// The system's message.
-    message: String,
-}
+use knotdock_structures::Error;
 
-fn counted(count: usize) -> String {
-    match count {
+/// Threads that the system could not start.
+fn not_started(count: usize, error: &rayon::ThreadPoolBuildError) -> Error {
+    let threads = match count {
         1 => "a thread".to_owned(),
         count => format!("{count} threads"),
-    }
+    };
+    Error::machine(format!("the system could not start {threads}: {error}")).help(
+        "use fewer --threads (-j 1 starts none), or allow more processes (`ulimit -u`) and memory (`ulimit -v`)",
+    )
 }
 
-impl ThreadsError {
-    /// Remedy for the user.
-    pub fn remedy(&self) -> &'static str {
-        "use fewer --threads (-j 1 starts none), or allow more processes (`ulimit -u`) and memory (`ulimit -v`)"
-    }
+/// The given number of threads, or all hardware threads.
+pub fn or_all(count: Option<usize>) -> usize {
+    count.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
 /// Does work on `count` threads: parallel iterators in it share these, and no others. They are those of the pool that
 /// the caller's thread belongs to, if that has so many, and else new ones, which end with the work.
 ///
 /// # Errors
-/// [`ThreadsError`] when they cannot be started, before any of the work is done.
-pub fn on<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> Result<T, ThreadsError> {
+/// [`Error`] when they cannot be started, before any of the work is done.
+pub fn on<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> Result<T, Error> {
     let count = count.max(1);
     // Outside of every pool the second question would start the global one.
     if rayon::current_thread_index().is_some() && rayon::current_num_threads() == count {
@@ -46,10 +40,7 @@ pub fn on<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> Result<T, T
         .num_threads(count)
         .stack_size(STACK)
         .build()
-        .map_err(|error| ThreadsError {
-            count,
-            message: error.to_string(),
-        })?;
+        .map_err(|error| not_started(count, &error))?;
     Ok(pool.install(work))
 }
 
@@ -57,16 +48,13 @@ pub fn on<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> Result<T, T
 /// is then done on it alone, and so is work on one thread.
 ///
 /// # Errors
-/// [`ThreadsError`] where the program has used the global pool before.
-pub fn stay_on_main() -> Result<(), ThreadsError> {
+/// [`Error`] where the program has used the global pool before.
+pub fn stay_on_main() -> Result<(), Error> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(1)
         .use_current_thread()
         .build_global()
-        .map_err(|error| ThreadsError {
-            count: 1,
-            message: error.to_string(),
-        })
+        .map_err(|error| not_started(1, &error))
 }
 
 #[cfg(test)]

@@ -16,8 +16,6 @@ const SHARES: [f64; 4] = [0.0625, 0.125, 0.25, 0.5];
 const DOUBLINGS: [i32; 3] = [1, 2, 3];
 /// Further sizes of the rotation set, multiples of eight, so that each transform of the ligand serves eight.
 const SETS: [usize; 4] = [160, 320, 1280, 2560];
-/// Terms of ends that a molecule does not have before it is cut.
-const TERMS_OF_ENDS: [&str; 2] = ["unresolved", "termini"];
 
 /// A quantity that is changed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -75,9 +73,9 @@ impl Pair {
             options.machine.threads = 1.into();
             options.search.rotations = ROTATIONS;
             options.search.poses = POSES;
-            for term in TERMS_OF_ENDS {
-                options.terms.weights.set(term, 0.0);
-            }
+            // A molecule has no such ends before it is cut.
+            options.terms.unresolved_weight = 0.0;
+            options.terms.termini_weight = 0.0;
         });
         let spacing = plan(&self.receptor, &self.ligand, &base)?.spacing;
         let setting = |varied, share, change: &dyn Fn(&mut DockOptions)| Setting {

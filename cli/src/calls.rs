@@ -2,17 +2,17 @@
 
 use std::ffi::{OsStr, OsString};
 
-use knotdock::options::InputOptions;
-use knotdock::options::text;
+use crate::arguments::options::{OfReading, TypedOptions};
+use clap::{Args, Command, FromArgMatches};
 use knotdock::threads;
 use knotdock_structures::molecule::Molecule;
 
 use crate::inputs::molecules::Input;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::listener::Listener;
 use crate::messages::suggestions::UTF_8;
 use crate::{in_utf8, parsed, run, unparsed};
+use knotdock_structures::Error;
 
 /// Runs a command for a program that hears what it says; the exit code: 0, or that of the parts which failed.
 ///
@@ -20,8 +20,8 @@ use crate::{in_utf8, parsed, run, unparsed};
 /// to `listener`.
 ///
 /// # Errors
-/// [`Failure`] for a command line that is none, help being one, and where the command fails.
-pub fn call(words: Vec<OsString>, listener: &dyn Listener) -> Result<u8, Failure> {
+/// [`Error`] for a command line that is none, help being one, and where the command fails.
+pub fn call(words: Vec<OsString>, listener: &dyn Listener) -> Result<u8, Error> {
     let name = std::iter::once(OsString::from("knotdock"));
     let cli = parsed(&name.chain(words).collect::<Vec<_>>()).map_err(|error| unparsed(&error))?;
     let console = Console {
@@ -35,10 +35,16 @@ pub fn call(words: Vec<OsString>, listener: &dyn Listener) -> Result<u8, Failure
 /// Reads a molecule, `FILE` or `FILE:H,L`, with words such as `--waters=keep`.
 ///
 /// # Errors
-/// [`Failure`] for words that are no options of reading, and where the file cannot be read.
-pub fn read_molecule(file: &OsStr, words: Vec<OsString>) -> Result<Molecule, Failure> {
-    let file = in_utf8(file).map_err(|fault| Failure::input(fault).remedy(UTF_8))?;
-    let options: InputOptions = text::read(words).map_err(|error| unparsed(&error))?;
-    let [input] = Input::read_all([file], &options.reading())?;
+/// [`Error`] for words that are no options of reading, and where the file cannot be read.
+pub fn read_molecule(file: &OsStr, words: Vec<OsString>) -> Result<Molecule, Error> {
+    let file = in_utf8(file).map_err(|fault| Error::input(fault).help(UTF_8))?;
+    let command = Command::new("knotdock")
+        .no_binary_name(true)
+        .disable_help_flag(true);
+    let options = TypedOptions::<OfReading>::augment_args(command)
+        .try_get_matches_from(words)
+        .and_then(|matches| TypedOptions::<OfReading>::from_arg_matches(&matches))
+        .map_err(|error| unparsed(&error))?;
+    let [input] = Input::read_all([file], &options.options.input.reading())?;
     Ok(input.molecule)
 }

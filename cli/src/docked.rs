@@ -9,7 +9,6 @@ use crate::tables::report::{BEST, best_clusters, firsts};
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::PreparedPair;
 use knotdock::dock::run::dock_until;
-use knotdock::error::SearchError;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::RUN;
 use knotdock::output::files::seal::REPORT;
@@ -24,6 +23,7 @@ use knotdock::output::tables::poses::PoseRow;
 use knotdock::output::tables::quality;
 use knotdock::output::tables::restraints;
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
+use knotdock_structures::Error;
 use serde_json::{Value, json};
 
 use crate::arguments::machine::machine;
@@ -35,32 +35,23 @@ use crate::messages::console::Console;
 use crate::messages::dock::{
     error_warning, few_rotations_warning, outcome_text, restraints_warning,
 };
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
 use crate::messages::timings::timings_text;
 
 impl Docking {
     /// Docks, and writes the run; its JSON object. What ended commands left there is said on `notices`, for a batch says
     /// that and nothing else of its pairs.
-    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
+    pub fn run(self, console: Console, notices: Console) -> Result<Value, Error> {
         let staging = Staging::open(RUN, &self.directory, self.force)?;
         warn_leftovers(&staging.leftovers, notices);
         self.dock(console)?.save(staging, console)
     }
 
     /// Docks, and writes nothing.
-    pub fn dock(mut self, console: Console) -> Result<Docked, Failure> {
+    pub fn dock(mut self, console: Console) -> Result<Docked, Error> {
         let progress = console.progress();
         let PreparedPair { plan, points, .. } = &self.prepared;
-        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress).map_err(
-            |error| match error {
-                SearchError::NoAllowedPose { .. } | SearchError::AllInMembrane => {
-                    Failure::input(&error).remedy(error.remedy())
-                }
-                SearchError::Ended(_) => Failure::of_program(&error).remedy(error.remedy()),
-                error => Failure::other(&error).remedy(error.remedy()),
-            },
-        )?;
+        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress)?;
         // The record says where the search stopped, so that it can be repeated.
         self.request.options.stopped = outcome.stopped;
         Ok(Docked::new(self, outcome))
@@ -128,7 +119,7 @@ impl Docked {
     }
 
     /// Writes the complexes of the best poses into a folder, which may hold the same ones.
-    pub fn export_top(&self, folder: &Path) -> Result<(), Failure> {
+    pub fn export_top(&self, folder: &Path) -> Result<(), Error> {
         let request = &self.docking.request;
         let rows = self.rows();
         let top = rows
@@ -146,7 +137,7 @@ impl Docked {
     }
 
     /// Writes the run; its JSON object.
-    pub fn save(&self, staging: Staging, console: Console) -> Result<Value, Failure> {
+    pub fn save(&self, staging: Staging, console: Console) -> Result<Value, Error> {
         let written = self.write(staging.stage())?;
         staging.commit()?;
         self.report(console);
@@ -164,7 +155,7 @@ impl Docked {
     }
 
     /// Writes the table, the complexes and the record of a run into its staging folder.
-    fn write(&self, staging: &Stage) -> Result<Written, Failure> {
+    fn write(&self, staging: &Stage) -> Result<Written, Error> {
         let (docking, outcome) = (&self.docking, &self.outcome);
         let Docking {
             request,
@@ -224,9 +215,9 @@ impl Docked {
                 ..machine(plan)
             },
         })
-        .map_err(Failure::other)?;
+        .map_err(Error::machine)?;
         staging.write("run.json", |file| manifest.write_to(file))?;
-        let record = serde_json::to_value(&manifest).map_err(Failure::other)?;
+        let record = serde_json::to_value(&manifest).map_err(Error::machine)?;
         if !output.no_report {
             let report = RunReport {
                 record: &record,
@@ -286,7 +277,7 @@ impl Docked {
 }
 
 /// Writes the scripts that show complexes in other programs, if there are any.
-pub fn write_scripts(staging: &Stage, complexes: &[ViewedComplex]) -> Result<(), Failure> {
+pub fn write_scripts(staging: &Stage, complexes: &[ViewedComplex]) -> Result<(), Error> {
     if !complexes.is_empty() {
         staging.write(PYMOL, |file| write_pymol(file, complexes))?;
         staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;

@@ -21,7 +21,7 @@ use crate::inputs::request::{Known, Request};
 use crate::messages::brief::{expected_text, score_text};
 use crate::messages::console::Console;
 use crate::messages::dock::{assumed, regions_text};
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// A run that is ready to go.
 pub struct Docking {
@@ -47,7 +47,7 @@ impl Docking {
         (directory, force): (PathBuf, bool),
         clock: Clock,
         console: Console,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         let arrangement = request.arrangement();
         if !arrangement.is_ring() {
             request.bodies.note_shared_chains();
@@ -149,12 +149,12 @@ fn seconds_of(plan: &DockPlan) -> f64 {
 }
 
 /// The refusal of a directory that holds something else, which `force` would replace.
-pub fn held_by_another(directory: &Path, force: &str) -> Failure {
-    Failure::input(
+pub fn held_by_another(directory: &Path, force: &str) -> Error {
+    Error::input(
         "the directory holds another run: of other inputs or options, by another version, or unfinished",
     )
     .at(directory)
-    .remedy(format!("pass {force} to replace it, or choose another directory with -o"))
+    .help(format!("pass {force} to replace it, or choose another directory with -o"))
 }
 
 /// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.
@@ -162,7 +162,7 @@ fn plan_within(
     wanted: Wanted,
     request: &mut Request,
     console: Console,
-) -> Result<(PreparedPair, Chosen), Failure> {
+) -> Result<(PreparedPair, Chosen), Error> {
     // Nothing is known of the time that sharp fits take before there are poses.
     if wanted.budget.is_some() && request.options.ranking.sharp == SharpChoice::Auto {
         request.options.ranking.sharp = SharpChoice::Off;
@@ -174,11 +174,8 @@ fn plan_within(
     request.options.search.rotations = rotations;
     let options = &mut request.options;
     let mut preparer = Preparer::new(request.bodies.pair(), options, &first);
-    let chosen = choose(wanted, options, &mut preparer)
-        .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
-    let prepared = preparer
-        .prepare(options)
-        .map_err(|error| Failure::input(&error).remedy(error.remedy()))?;
+    let chosen = choose(wanted, options, &mut preparer)?;
+    let prepared = preparer.prepare(options)?;
     let error = chosen
         .predicted_error
         .map(|error| format!(" and an error of {error:.1e} of the best score"));

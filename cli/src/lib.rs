@@ -28,19 +28,18 @@ use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
 use std::sync::LazyLock;
 
+use crate::messages::suggestions::first_paragraph;
 use crate::signals::report_end;
 pub use arguments::memory::default_limit as memory_limit;
 use arguments::program::{ProgramArguments, with_negative_numbers};
 pub use calls::{call, read_molecule};
 use clap::error::ErrorKind;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
-use knotdock::options::text::first_paragraph;
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 use knotdock::search::scan_engine::name_runtime_folder;
 use knotdock::threads;
+use knotdock_structures::Error;
 use messages::console::Console;
-pub use messages::failure::Failure;
-use messages::library_errors::fault_of_named_file;
 pub use messages::listener::Listener;
 use messages::shown::shown;
 use messages::suggestions;
@@ -156,7 +155,7 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
 }
 
 /// Runs a command; its exit code.
-fn run(command: Command, console: Console) -> Result<u8, Failure> {
+fn run(command: Command, console: Console) -> Result<u8, Error> {
     let done = match command {
         Command::Dock(command) => command.run(console),
         Command::Batch(command) => return command.run(console),
@@ -266,10 +265,8 @@ fn escaped(error: clap::Error, arguments: &[OsString]) -> clap::Error {
         OsString::from(shown(&argument).as_ref())
     });
     let escaped: Vec<OsString> = escaped.collect();
-    // A file that an option names is read as the option is: it goes by its own name alone.
-    let is_of_file = fault_of_named_file(&error).is_some();
     match parsed(&escaped) {
-        Err(again) if again.kind() == error.kind() && !is_of_file => again,
+        Err(again) if again.kind() == error.kind() => again,
         _ => error,
     }
 }
@@ -284,7 +281,7 @@ fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> u8 {
         json,
         ..Console::default()
     };
-    if fault_of_named_file(error).is_some() || (json && !for_information) {
+    if json && !for_information {
         console.fail(&unparsed(error));
     } else if are_plain(arguments) {
         // A terminal that is gone needs no message.
@@ -296,16 +293,10 @@ fn refuse(error: &clap::Error, arguments: &[OsString], json: bool) -> u8 {
 }
 
 /// A command line that is wrong, as a failure.
-fn unparsed(error: &clap::Error) -> Failure {
-    match fault_of_named_file(error) {
-        Some(failure) => failure,
-        None => {
-            let remedy = suggestions::suggested(error).unwrap_or_else(|| {
-                "see `knotdock --help` and `knotdock COMMAND --help`".to_owned()
-            });
-            Failure::input(first_paragraph(error)).remedy(remedy)
-        }
-    }
+fn unparsed(error: &clap::Error) -> Error {
+    let remedy = suggestions::suggested(error)
+        .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
+    Error::input(first_paragraph(error)).help(remedy)
 }
 
 #[cfg(test)]

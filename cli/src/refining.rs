@@ -5,7 +5,6 @@ use std::path::Path;
 use crate::tables::refined::RefinedRow;
 use crate::tables::report::align;
 use cpu_time::ProcessTime;
-use knotdock::error::SearchError;
 use knotdock::evaluate::{Evaluator, PoseQuality};
 use knotdock::output::files::complexes::write_complexes;
 use knotdock::output::tables::poses::PoseRow;
@@ -13,13 +12,12 @@ use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::progress::Progress;
 use knotdock::refine::{RefineOptions, Refined, Refiner};
 use knotdock_scoring::sharp::PairList;
-use knotdock_structures::knots::KnotsError;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{ChainMap, Molecule};
 use rayon::prelude::*;
 
 use crate::inputs::native::{NativeFiles, announce};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 
 /// A known complex, matched with the molecules as docked.
 pub struct Known {
@@ -42,14 +40,14 @@ impl Known {
                 Some(Self { files, evaluator })
             }
             Err(failure) => {
-                console.warn(format!("no pose is measured: {}", failure.line_of_table()));
+                console.warn(format!("no pose is measured: {}", failure.in_one_line()));
                 None
             }
         }
     }
 
     /// Qualities of a pose and of what it was refined to.
-    fn qualities(&self, row: &PoseRow, refined: &Refined) -> Result<[PoseQuality; 2], Failure> {
+    fn qualities(&self, row: &PoseRow, refined: &Refined) -> Result<[PoseQuality; 2], Error> {
         let after = match &refined.packed {
             None => self.evaluator.evaluate(&refined.pose),
             // Contacts are of all heavy atoms, so packed molecules are matched anew.
@@ -90,9 +88,9 @@ impl<'a> Refining<'a> {
         options: RefineOptions,
         known: Option<&'a Known>,
         staged: &'a Path,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         Ok(Self {
-            refiner: Refiner::new(pair, options).map_err(unusable)?,
+            refiner: Refiner::new(pair, options)?,
             pair,
             known,
             staged,
@@ -100,7 +98,7 @@ impl<'a> Refining<'a> {
     }
 
     /// Refines and writes the poses of some rows, in their order.
-    pub fn all(&self, rows: &[PoseRow], console: Console) -> Result<Written, Failure> {
+    pub fn all(&self, rows: &[PoseRow], console: Console) -> Result<Written, Error> {
         let cpu = ProcessTime::try_now().ok();
         let progress = console.progress();
         progress.stage("refining", rows.len() as u64);
@@ -110,7 +108,7 @@ impl<'a> Refining<'a> {
             written
         };
         let written = rows.par_iter().map_init(PairList::default, one);
-        let written: Vec<_> = written.collect::<Result<_, Failure>>()?;
+        let written: Vec<_> = written.collect::<Result<_, Error>>()?;
         let cpu = cpu.and_then(|cpu| cpu.try_elapsed().ok());
         let mut all = Written {
             cpu_seconds_per_pose: cpu.map(|cpu| cpu.as_secs_f64() / rows.len().max(1) as f64),
@@ -132,9 +130,9 @@ impl<'a> Refining<'a> {
         &self,
         row: &PoseRow,
         list: &mut PairList,
-    ) -> Result<(RefinedRow, String, ChainMap), Failure> {
+    ) -> Result<(RefinedRow, String, ChainMap), Error> {
         let refined = self.refiner.refine(&row.pose, list);
-        let mut refined = refined.map_err(unusable)?;
+        let mut refined = refined?;
         let quality = self.known.map(|known| known.qualities(row, &refined));
         let quality = quality.transpose()?;
         let packed = refined.packed.take();
@@ -186,9 +184,4 @@ impl Written {
         }
         align(&lines)
     }
-}
-
-fn unusable(error: KnotsError) -> Failure {
-    let error = SearchError::from(error);
-    Failure::input(&error).remedy(error.remedy())
 }

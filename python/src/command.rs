@@ -14,7 +14,8 @@ use std::time::Duration;
 use knotdock::output::files::added::add_files;
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 use knotdock::progress::Ended;
-use knotdock_cli::{Failure, Listener};
+use knotdock_cli::Listener;
+use knotdock_structures::Error;
 use pyo3::prelude::*;
 use pyo3::types::PyList;
 
@@ -23,7 +24,7 @@ use crate::failure::{exception, fault};
 /// Adds files to a run: its inputs, which are found again beside its record.
 #[pyfunction]
 pub fn add(py: Python<'_>, run: PathBuf, files: Vec<PathBuf>) -> PyResult<()> {
-    add_files(&run, &files).map_err(|error| exception(py, &Failure::from(error)))
+    add_files(&run, &files).map_err(|error| exception(py, &Error::from(error)))
 }
 
 /// Time between two looks at signals and at what the command has said.
@@ -133,7 +134,7 @@ pub fn call(
         .spawn(work)?;
     let mut interrupted: Option<PyErr> = None;
     let mut result = None;
-    let done: Option<Result<u8, Failure>> = loop {
+    let done: Option<Result<u8, Error>> = loop {
         let (waited, back) = py.detach(move || (receiver.recv_timeout(LOOK), receiver));
         receiver = back;
         // What a listener raises ends the command as Ctrl-C does.

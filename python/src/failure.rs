@@ -1,12 +1,12 @@
 //! Failures as exceptions with file, line, message and remedy: classes of `knotdock.errors`.
 
-use knotdock_cli::Failure;
+use knotdock_structures::Error;
 use pyo3::prelude::*;
 
 /// The exception of a failure: `InputError` for bad input, `KnotdockError` for anything else.
-pub fn exception(py: Python<'_>, failure: &Failure) -> PyErr {
+pub fn exception(py: Python<'_>, failure: &Error) -> PyErr {
     let file = failure.file().map(|file| file.display().to_string());
-    let parts = (failure.message(), file, failure.line(), failure.advice());
+    let parts = (failure.message(), file, failure.line(), failure.remedy());
     made(py, failure.exit_code() == 2, parts)
 }
 

@@ -9,11 +9,11 @@ use crate::dock::plan::{DockPlan, plan, plan_scene};
 use crate::dock::run::molecule_points;
 use crate::dock::scene::Scene;
 use crate::dock::stopwatch::timed;
-use crate::error::SearchError;
 use crate::mesh::samplers::SamplerName;
 use crate::mesh::shape::Shape;
 use crate::mesh::{CLUSTER_RADIUS, MeshOptions, MeshPair, MeshSceneError, sample_pair};
 use crate::options::{DockOptions, SampleWeights};
+use knotdock_structures::Error;
 
 /// Two bodies, the receptor first.
 #[derive(Clone, Copy)]
@@ -22,27 +22,6 @@ pub enum Pair<'a> {
     Molecules([&'a Molecule; 2]),
     /// Meshes or files of balls, in one unit of length.
     Meshes([Shape<'a>; 2]),
-}
-
-/// Why a setting cannot be run.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum PairError {
-    /// The search refuses it.
-    #[error(transparent)]
-    Search(#[from] SearchError),
-    /// The meshes cannot be sampled so.
-    #[error(transparent)]
-    Mesh(#[from] MeshSceneError),
-}
-
-impl PairError {
-    /// Remedy for the user.
-    pub fn remedy(&self) -> String {
-        match self {
-            Self::Search(error) => error.remedy(),
-            Self::Mesh(error) => error.remedy().to_owned(),
-        }
-    }
 }
 
 /// Meshes as balls, and what it took to make them.
@@ -81,11 +60,11 @@ impl PreparedPair {
     /// Plans a docking of molecules.
     ///
     /// # Errors
-    /// [`SearchError`].
+    /// [`Error`].
     pub fn molecules(
         [receptor, ligand]: [&Molecule; 2],
         options: &DockOptions,
-    ) -> Result<Self, SearchError> {
+    ) -> Result<Self, Error> {
         let (planned, time) = timed("plan", || plan(receptor, ligand, options));
         Ok(Self {
             plan: planned?,
@@ -98,8 +77,8 @@ impl PreparedPair {
     /// Plans a docking of sampled meshes; `options` have all lengths.
     ///
     /// # Errors
-    /// [`SearchError`].
-    pub fn meshes(sampling: Arc<Sampling>, options: &DockOptions) -> Result<Self, SearchError> {
+    /// [`Error`].
+    pub fn meshes(sampling: Arc<Sampling>, options: &DockOptions) -> Result<Self, Error> {
         let (planned, time) = timed("plan", || {
             let scene = Scene::of_meshes(&sampling.pair, options)?;
             plan_scene(scene, options)
@@ -146,8 +125,8 @@ impl<'a> Preparer<'a> {
     /// again, with the time that it took.
     ///
     /// # Errors
-    /// [`PairError`].
-    pub fn prepare(&mut self, options: &DockOptions) -> Result<PreparedPair, PairError> {
+    /// [`Error`].
+    pub fn prepare(&mut self, options: &DockOptions) -> Result<PreparedPair, Error> {
         match self.pair {
             Pair::Molecules(molecules) => Ok(PreparedPair::molecules(molecules, options)?),
             Pair::Meshes(solids) => {
@@ -161,7 +140,7 @@ impl<'a> Preparer<'a> {
         &mut self,
         solids: [Shape; 2],
         options: &DockOptions,
-    ) -> Result<Arc<Sampling>, MeshSceneError> {
+    ) -> Result<Arc<Sampling>, Error> {
         let wanted = key(options);
         if let Some((_, known)) = self.sampled.iter().find(|(known, _)| *known == wanted) {
             return Ok(Arc::clone(known));

@@ -4,7 +4,7 @@ use crate::dock::effect_decisions::Decision;
 use crate::dock::memory::MemoryPlan;
 use crate::dock::memory::stages::MemoryStage;
 use crate::dock::scene::{LengthUnit, Scene};
-use crate::error::SearchError;
+use crate::error::unplanned;
 use crate::options::{DockOptions, REFINED_BY_SHAPE};
 use crate::pose_space::PoseSpace;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
@@ -18,6 +18,7 @@ use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::lifted_axis::RadiusBasis;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Rescorer;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{LabelReport, Molecule};
 use knotdock_structures::{Knots, PolarAtom};
 use serde::Serialize;
@@ -96,13 +97,13 @@ pub struct DockPlan {
 /// Plans the docking of two molecules.
 ///
 /// # Errors
-/// [`SearchError`] on options out of range, unusable knots, or too little memory for a single rotation.
+/// [`Error`] on options out of range, unusable knots, or too little memory for a single rotation.
 pub fn plan(
     receptor: &Molecule,
     ligand: &Molecule,
     options: &DockOptions,
-) -> Result<DockPlan, SearchError> {
-    options.check()?;
+) -> Result<DockPlan, Error> {
+    options.validate()?;
     plan_scene(Scene::new(receptor, ligand, options)?, options)
 }
 
@@ -110,10 +111,12 @@ pub fn plan(
 ///
 /// # Errors
 /// As [`plan`].
-pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, SearchError> {
-    options.check()?;
+pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Error> {
+    options.validate()?;
     let space = PoseSpace::new(options.search.symmetry, scene.ring_axis);
-    let engine = space.grid_of(scene.engine_plan(options)?, &scene.receptor)?;
+    let engine = space
+        .grid_of(scene.engine_plan(options)?, &scene.receptor)
+        .map_err(unplanned)?;
     let refined = refined(&space, &scene.decisions, options);
     let memory = MemoryPlan::new(&scene, &engine, options, (&space, refined))?;
     let limits = (memory.in_flight(), memory.graphics);
@@ -193,8 +196,8 @@ impl DockPlan {
     /// The exact sum of what is ranked.
     ///
     /// # Errors
-    /// [`SearchError::Knots`] on knots that cannot be summed.
-    pub fn exact_scorer(&self) -> Result<ExactSum, SearchError> {
+    /// [`Error`] on knots that cannot be summed.
+    pub fn exact_scorer(&self) -> Result<ExactSum, Error> {
         let engine = &self.search.engine;
         Ok(ExactSum::of(engine, &self.receptor, &self.ligand)?)
     }

@@ -4,7 +4,7 @@ use crate::dock::effect_costs::{components_by_effect, effect_costs, rank_of};
 use crate::dock::outcome::{DockOutcome, MeasuredError, SharpOutcome, error_scale};
 use crate::dock::plan::DockPlan;
 use crate::dock::stopwatch::Stopwatch;
-use crate::error::SearchError;
+use crate::error::no_pose;
 use crate::options::{Precision, Stopped};
 use crate::pose_space::refine::{AscentLimits, RefinedPose, printed};
 use crate::pose_space::rotations::RotationGroup;
@@ -30,6 +30,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_scoring::transform::Real;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
 use std::time::Instant;
@@ -48,12 +49,12 @@ const REFINED_TOGETHER: usize = 4;
 /// and never the global pool ([`threads::on`]). Planning and sampling run in the caller's pool.
 ///
 /// # Errors
-/// [`SearchError`] when threads cannot be had or no pose scores.
+/// [`Error`] when threads cannot be had or no pose scores.
 pub fn dock(
     plan: &DockPlan,
     points: &[[f64; 3]],
     progress: &dyn Progress,
-) -> Result<DockOutcome, SearchError> {
+) -> Result<DockOutcome, Error> {
     dock_until(plan, points, None, progress)
 }
 
@@ -71,7 +72,7 @@ pub fn dock_until(
     points: &[[f64; 3]],
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
-) -> Result<DockOutcome, SearchError> {
+) -> Result<DockOutcome, Error> {
     threads::on(plan.in_flight(), || match plan.options.search.precision {
         Precision::Single => dock_in::<f32>(plan, points, deadline, progress),
         Precision::Double => dock_in::<f64>(plan, points, deadline, progress),
@@ -84,7 +85,7 @@ fn dock_in<T: Real>(
     points: &[[f64; 3]],
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
-) -> Result<DockOutcome, SearchError> {
+) -> Result<DockOutcome, Error> {
     let mut clock = Stopwatch::start();
     let Prepared {
         spectra,
@@ -193,7 +194,7 @@ struct Prepared<T: Real> {
 
 impl<T: Real> Prepared<T> {
     /// Transforms the receptor and chooses the rank.
-    fn new(plan: &DockPlan, progress: &dyn Progress) -> Result<Self, SearchError> {
+    fn new(plan: &DockPlan, progress: &dyn Progress) -> Result<Self, Error> {
         progress.stage("prepare", 1);
         let engine = &plan.search.engine;
         let spectra = ReceptorSpectra::new(engine, &plan.receptor, &plan.ligand, Quantity::Score);
@@ -245,7 +246,7 @@ fn find<T: Real>(
     engine: &ScanEngine<T>,
     deadline: Option<&Deadline>,
     (progress, clock): (&dyn Progress, &mut Stopwatch),
-) -> Result<Found, SearchError> {
+) -> Result<Found, Error> {
     let search = &plan.search;
     let groups = schedule(search, deadline.is_some());
     let wanted: usize = groups.iter().map(RotationGroup::count).sum();
@@ -257,16 +258,20 @@ fn find<T: Real>(
     clock.lap("search");
     if peaks.is_empty() {
         let restraints = &plan.restraints.distances;
-        return Err(if restraints.list.is_empty() {
-            match plan.restraints.membrane {
-                Some(_) => SearchError::AllInMembrane,
-                None => SearchError::NoPose,
-            }
+        return Err(if !restraints.list.is_empty() {
+            Error::input(format!(
+                "no pose that is searched can satisfy {} of the {} restraints",
+                restraints.needed,
+                restraints.list.len()
+            ))
+            .help(
+                "accept fewer with --restraints-need, raise upper bounds, or check chains and numbers of residues",
+            )
+        } else if plan.restraints.membrane.is_some() {
+            Error::input("every pose that is searched lies in the membrane")
+                .help("check that the molecule that has the membrane reaches out of it")
         } else {
-            SearchError::NoAllowedPose {
-                needed: restraints.needed,
-                count: restraints.list.len(),
-            }
+            no_pose()
         });
     }
     let mut fine = None;

@@ -1,8 +1,9 @@
 //! The scene of a docking run: two labelled bodies with the terms that act between them.
 
 use crate::dock::effect_decisions::{self, Decision};
-use crate::error::SearchError;
+use crate::error::unplanned;
 use crate::mesh::MeshPair;
+use crate::options::refused;
 use crate::options::{DockOptions, SharpChoice};
 use crate::priors;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
@@ -15,6 +16,7 @@ use knotdock_scoring::kernel::Band;
 use knotdock_scoring::symmetry::RingAxis;
 use knotdock_scoring::terms::effect::{Effect, EffectInputs, LabelCounts, Term};
 use knotdock_scoring::terms::pose::Rescorer;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{LabelReport, Labels, Molecule};
 use knotdock_structures::{Knots, PolarAtom};
 use serde::Serialize;
@@ -90,13 +92,13 @@ impl Scene {
     /// The scene of two molecules.
     ///
     /// # Errors
-    /// [`SearchError`] on unusable knots, on a pH or weight out of range, and when an effect is requested that the
+    /// [`Error`] on unusable knots, on a pH or weight out of range, and when an effect is requested that the
     /// molecules lack something for.
     pub fn new(
         receptor: &Molecule,
         ligand: &Molecule,
         options: &DockOptions,
-    ) -> Result<Self, SearchError> {
+    ) -> Result<Self, Error> {
         options.check_ranges()?;
         let ring_axis = ring_axis(receptor, options)?;
         let molecules = [receptor, ligand];
@@ -105,7 +107,7 @@ impl Scene {
         let sites = sites.each_ref().map(Vec::as_slice);
         let restraints = Restraints::new(molecules, sites, options)?;
         let residues: usize = restraints.active.iter().map(Vec::len).sum();
-        let active_weight = options.terms.weights.get("active_residues");
+        let active_weight = options.terms.active_weight;
         let [own, other] = &restraints.roles;
         let inputs = EffectInputs {
             labels: [0, 1].map(|side| label_counts(molecules[side], &labels[side].report)),
@@ -119,7 +121,7 @@ impl Scene {
         let [receptor_labels, ligand_labels] = labels;
         let on = |effect: Effect| decisions.iter().any(|d| d.effect == effect && d.on);
         // Knots carry only the labels that an effect reads.
-        let label = |knots: Knots, labels: Labels| -> Result<(Knots, LabelReport), SearchError> {
+        let label = |knots: Knots, labels: Labels| -> Result<(Knots, LabelReport), Error> {
             let charges = if on(Effect::Electrostatics) {
                 labels.charges
             } else {
@@ -138,9 +140,8 @@ impl Scene {
         let terms = decisions.iter().filter(|decision| decision.on);
         let terms = terms.filter_map(|Decision { effect, .. }| {
             let definition = effect.definition();
-            // Shape, which has none, is what the others are weighed against.
-            let weight = definition.weight.as_ref();
-            let weight = weight.map_or(1.0, |_| options.terms.weights.get(definition.id));
+            // Shape has none: the others are weighed against it.
+            let weight = options.terms.weight(definition.id).unwrap_or(1.0);
             (definition.term)([&receptor, &ligand], &inputs, weight)
         });
         let terms = terms.collect();
@@ -183,8 +184,8 @@ impl Scene {
     /// The scene of two meshes, which shape alone scores.
     ///
     /// # Errors
-    /// [`SearchError`] when another effect or sharp fits are requested.
-    pub fn of_meshes(pair: &MeshPair, options: &DockOptions) -> Result<Self, SearchError> {
+    /// [`Error`] when another effect or sharp fits are requested.
+    pub fn of_meshes(pair: &MeshPair, options: &DockOptions) -> Result<Self, Error> {
         if options.ranking.sharp == SharpChoice::On {
             return Err(no_sharp_fits("of meshes"));
         }
@@ -209,8 +210,8 @@ impl Scene {
     /// The engine's plan for the scene.
     ///
     /// # Errors
-    /// [`SearchError`] on knots or options that no engine can correlate.
-    pub(crate) fn engine_plan(&self, options: &DockOptions) -> Result<Plan, SearchError> {
+    /// [`Error`] on knots or options that no engine can correlate.
+    pub(crate) fn engine_plan(&self, options: &DockOptions) -> Result<Plan, Error> {
         self.plan_of(options.kernel.engine(), options.kernel.tolerance)
     }
 
@@ -223,18 +224,20 @@ impl Scene {
         &self,
         engine: EngineOptions,
         kernel_tolerance: f64,
-    ) -> Result<Plan, SearchError> {
+    ) -> Result<Plan, Error> {
         let (receptor, ligand) = (&self.receptor, &self.ligand);
         Ok(match self.skin {
             None => {
                 let terms = self.terms.clone();
-                Plan::with_effects(receptor, ligand, engine, kernel_tolerance, terms)?
+                Plan::with_effects(receptor, ligand, engine, kernel_tolerance, terms)
+                    .map_err(unplanned)?
             }
             Some(skin) => {
                 let unit = engine.kernel.offset;
                 let mut engine = engine;
                 engine.kernel.offset = skin;
-                Plan::product_in(receptor, ligand, engine, Band::LowPass, unit)?
+                Plan::product_in(receptor, ligand, engine, Band::LowPass, unit)
+                    .map_err(unplanned)?
             }
         })
     }
@@ -256,8 +259,8 @@ impl Scene {
 /// contacts score as well, which the weights of the ranking were chosen with. Copies of a ring cannot move alone.
 ///
 /// # Errors
-/// [`SearchError::Option`] when they are requested of a ring.
-fn sharp_fits(options: &DockOptions, contacts: bool) -> Result<bool, SearchError> {
+/// [`Error`] when they are requested of a ring.
+fn sharp_fits(options: &DockOptions, contacts: bool) -> Result<bool, Error> {
     let is_free = options.search.symmetry.is_none();
     match options.ranking.sharp {
         SharpChoice::Auto => Ok(is_free && contacts),
@@ -268,16 +271,15 @@ fn sharp_fits(options: &DockOptions, contacts: bool) -> Result<bool, SearchError
 }
 
 /// Refusal of sharp fits where they cannot be had.
-fn no_sharp_fits(of: &str) -> SearchError {
-    SearchError::Option {
-        name: "sharp",
-        value: "on".to_owned(),
-        bound: format!("auto or off {of}"),
-    }
+fn no_sharp_fits(of: &str) -> Error {
+    refused("sharp", "on", &format!("auto or off {of}"))
 }
 
 /// Axis of a molecule that is a ring, where two such rings are docked.
-fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAxis>, SearchError> {
+///
+/// # Errors
+/// [`Error`] for a molecule that is no such ring.
+pub fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAxis>, Error> {
     let Some((symmetry, folds)) = options
         .search
         .symmetry
@@ -285,7 +287,15 @@ fn ring_axis(molecule: &Molecule, options: &DockOptions) -> Result<Option<RingAx
     else {
         return Ok(None);
     };
-    let no_ring = |reason: String| SearchError::Ring { symmetry, reason };
+    let no_ring = |reason: String| {
+        Error::input(format!(
+            "{symmetry} docks two rings, and this molecule is not such a ring: {reason}"
+        ))
+        .help(format!(
+            "dock the single molecule with --symmetry C{folds} first and give a complex of that run, such as its \
+             top/rank_0001.pdb: copies one after another, each with all its chains"
+        ))
+    };
     let copies = molecule.copies(folds);
     let copies = copies.map_err(|error| no_ring(error.to_string()))?;
     let axis = RingAxis::of(&copies).map_err(|error| no_ring(error.to_string()))?;
@@ -331,7 +341,7 @@ mod tests {
         let molecule = peptide(4.0);
         let pull = |residues: &str| {
             let options = DockOptions::default().changed(|options| {
-                options.terms.weights.set("active_residues", 1000.0);
+                options.terms.active_weight = 1000.0;
                 options.restraints.active_ligand = Some(residues.parse().unwrap());
             });
             let scene = Scene::new(&molecule, &molecule, &options).unwrap();

@@ -6,8 +6,8 @@ use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_structures::molecule::Molecule;
 
 use crate::dock::plan::plan;
-use crate::error::SearchError;
 use crate::options::DockOptions;
+use knotdock_structures::Error;
 
 /// The terms of a score.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -30,11 +30,11 @@ impl PlacedScore {
 /// Scores a complex as `dock` scores a pose.
 ///
 /// # Errors
-/// [`SearchError`] on options out of range and molecules that cannot be scored.
+/// [`Error`] on options out of range and molecules that cannot be scored.
 pub fn score_in_place(
     [receptor, ligand]: [&Molecule; 2],
     options: &DockOptions,
-) -> Result<PlacedScore, SearchError> {
+) -> Result<PlacedScore, Error> {
     // Nothing is searched: the fewest rotations are planned fastest.
     let options = options.changed(|options| {
         options.search.rotations = 4;

@@ -16,16 +16,15 @@
 pub mod samplers;
 pub mod shape;
 
-use clap::ValueEnum;
-use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::numeric::Bump;
-use knotdock_structures::numeric::bump::AlphaError;
 use knotdock_structures::sampling::feature_size::feature_size;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::weights::FittedWeights;
 use knotdock_structures::sampling::{Ball, SampleError};
+use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
+use std::fmt;
 
 use crate::mesh::samplers::{BallsToWeigh, PartToSample, Sampler, SamplerName, union};
 use crate::mesh::shape::Shape;
@@ -34,11 +33,14 @@ use crate::mesh::shape::Shape;
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
 /// Length that stands for one Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
+/// The remedy where one part is far larger than the other.
+const CUT_DOWN: &str =
+    "where one part is much larger than the other, cut it down to what is near the joint";
 /// Longest edges of a bounding box that single precision carries through the search.
 const SIZES: std::ops::RangeInclusive<f64> = 1e-7..=1e9;
 
 /// Weights of a mesh's balls.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SampleWeights {
     /// Such that the summed bumps come closest to one inside and to zero outside.
@@ -63,104 +65,44 @@ pub struct MeshOptions {
     pub alpha: f64,
 }
 
-/// Why two meshes cannot be docked.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum MeshSceneError {
-    /// A part cannot be sampled.
-    #[error("{source}")]
-    Sample {
-        /// Which part: 0 the receptor, 1 the ligand.
-        part: usize,
-        /// Why.
-        source: SampleError,
-    },
-    /// The sampler makes balls of solids alone.
-    #[error("the part is balls already, which this sampler cannot take as they are")]
-    BallFile {
-        /// Which part.
-        part: usize,
-    },
-    /// The bump function has no such exponent.
-    #[error(transparent)]
-    Alpha(#[from] AlphaError),
-    /// The balls are not usable.
-    #[error(transparent)]
-    Knots(#[from] KnotsError),
-    /// A part is so large or small that its numbers leave single precision.
-    #[error(
-        "the part is {extent:e} across; meshes that dock must be between {:e} and {:e}",
-        SIZES.start(),
-        SIZES.end()
-    )]
-    Size {
-        /// Which part.
-        part: usize,
-        /// Longest edge of its bounding box.
-        extent: f64,
-    },
-    /// A part is thinner than the two grids resolve together.
-    #[error(
-        "the part's features are about {feature:.3e} in radius, too thin beside the {resolved:.3e} (eps of both \
-         parts) to which the two are sampled"
-    )]
-    Thin {
-        /// Which part.
-        part: usize,
-        /// Its feature size.
-        feature: f64,
-        /// eps of the receptor and of the ligand together.
-        resolved: f64,
-    },
-    /// The offset is finer than the sampling, or larger than a part.
-    #[error(
-        "an offset of {offset:.3e} is {}: it must lie between {low:.3e}, eps of both parts, and {high:.3e}, a quarter of the smaller part",
-        if .offset < .low { "finer than the parts are sampled" } else { "too coarse for the parts" }
-    )]
-    Offset {
-        /// The offset requested, or the default.
-        offset: f64,
-        /// Least.
-        low: f64,
-        /// Most.
-        high: f64,
-    },
+/// An error of two meshes that are docked, with the part at fault.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MeshSceneError {
+    /// The part at fault, if one is: 0 the receptor, 1 the ligand.
+    pub part: Option<usize>,
+    /// The error.
+    pub error: Error,
 }
 
-impl MeshSceneError {
-    /// The part at fault, where one is: 0 the receptor, 1 the ligand.
-    pub fn part(&self) -> Option<usize> {
-        match self {
-            Self::Sample { part, .. }
-            | Self::Size { part, .. }
-            | Self::Thin { part, .. }
-            | Self::BallFile { part } => Some(*part),
-            Self::Alpha(_) | Self::Knots(_) | Self::Offset { .. } => None,
+impl From<KnotsError> for MeshSceneError {
+    fn from(error: KnotsError) -> Self {
+        Self {
+            part: None,
+            error: Error::input(error)
+                .help("check the mesh, or sample it on a finer --sample-grid"),
         }
     }
+}
 
-    /// Remedy for the user.
-    pub fn remedy(&self) -> &'static str {
-        match self {
-            Self::Sample { .. } => {
-                "check that the mesh is closed and one solid, or sample it on a finer --sample-grid"
-            }
-            Self::BallFile { .. } => "dock files of balls with --sampler bi",
-            Self::Alpha(_) => "give --alpha a number above zero",
-            Self::Knots(_) => "check the mesh, or sample it on a finer --sample-grid",
-            Self::Size { .. } => {
-                "scale both meshes alike, into a unit in which they are about 1 to 1000 across"
-            }
-            Self::Thin { .. } => {
-                "sample finer with --sample-grid (2^21, say); where one part is much larger than the other, cut \
-                 it down to what is near the joint"
-            }
-            Self::Offset { .. } => {
-                "choose --offset in this range, or a finer --sample-grid, which brings its lower end down; \
-                 where one part is much larger than the \
-                 other, cut it down to what is near the joint"
-            }
-        }
+impl From<MeshSceneError> for Error {
+    fn from(error: MeshSceneError) -> Self {
+        error.error
     }
+}
+
+/// The error of a part.
+fn of_part(part: usize, message: impl fmt::Display, remedy: &str) -> MeshSceneError {
+    MeshSceneError {
+        part: Some(part),
+        error: Error::input(message).help(remedy),
+    }
+}
+
+/// A part that cannot be sampled.
+fn unsampled(part: usize, error: &SampleError) -> MeshSceneError {
+    let remedy =
+        "check that the mesh is closed and one solid, or sample it on a finer --sample-grid";
+    of_part(part, error, remedy)
 }
 
 /// A part as it is docked. Lengths in the file's unit.
@@ -228,7 +170,14 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
     });
     for (part, &extent) in extents.iter().enumerate() {
         if !SIZES.contains(&extent) {
-            return Err(MeshSceneError::Size { part, extent });
+            let message = format!(
+                "the part is {extent:e} across; meshes that dock must be between {:e} and {:e}",
+                SIZES.start(),
+                SIZES.end()
+            );
+            let remedy =
+                "scale both meshes alike, into a unit in which they are about 1 to 1000 across";
+            return Err(of_part(part, message, remedy));
         }
     }
     let measured = shapes.map(|shape| Measured::of(shape, options.per_axis));
@@ -237,16 +186,16 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
     let resolved = epsilons[0] + epsilons[1];
     for (part, measured) in measured.iter().enumerate() {
         if measured.inside == 0 {
-            let source = SampleError::NothingInside;
-            return Err(MeshSceneError::Sample { part, source });
+            return Err(unsampled(part, &SampleError::NothingInside));
         }
         let feature = features[part];
         if feature < 0.5 * resolved {
-            return Err(MeshSceneError::Thin {
-                part,
-                feature,
-                resolved,
-            });
+            let message = format!(
+                "the part's features are about {feature:.3e} in radius, too thin beside the {resolved:.3e} (eps of \
+                 both parts) to which the two are sampled"
+            );
+            let remedy = format!("sample finer with --sample-grid (2^21, say); {CUT_DOWN}");
+            return Err(of_part(part, message, &remedy));
         }
     }
     let offset = options
@@ -255,7 +204,22 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
     let (low, high) = (resolved, 0.25 * extents[0].min(extents[1]));
     // An offset that --rerun gives back may differ from the bound by a rounding.
     if !(low * (1.0 - 1e-9)..=high).contains(&offset) {
-        return Err(MeshSceneError::Offset { offset, low, high });
+        let fault = if offset < low {
+            "finer than the parts are sampled"
+        } else {
+            "too coarse for the parts"
+        };
+        let message = format!(
+            "an offset of {offset:.3e} is {fault}: it must lie between {low:.3e}, eps of both parts, and {high:.3e}, a \
+             quarter of the smaller part"
+        );
+        let remedy = format!(
+            "choose --offset in this range, or a finer --sample-grid, which brings its lower end down; {CUT_DOWN}"
+        );
+        return Err(MeshSceneError {
+            part: None,
+            error: Error::input(message).help(remedy),
+        });
     }
     Ok(MeshPair {
         parts: [
@@ -325,7 +289,8 @@ impl<'a> Measured<'a> {
         offset: f64,
         options: &MeshOptions,
     ) -> Result<SampledPart, MeshSceneError> {
-        let bump = Bump::new(options.alpha)?;
+        let bump = Bump::new(options.alpha)
+            .map_err(|error| of_part(index, error, "give --alpha a number above zero"))?;
         let fitted = (options.weights == SampleWeights::Fitted).then_some(bump);
         let sampler = options.sampler.sampler();
         let found = match (self.shape, &self.field, sampler.of_balls) {
@@ -336,10 +301,7 @@ impl<'a> Measured<'a> {
                     offset: offset / self.unit,
                     fitted,
                 };
-                (sampler.sample)(&part).map_err(|source| {
-                    let part = index;
-                    MeshSceneError::Sample { part, source }
-                })?
+                (sampler.sample)(&part).map_err(|error| unsampled(index, &error))?
             }
             (Shape::Balls(part), _, Some(of_balls)) => of_balls(&BallsToWeigh {
                 balls: about(self.middle, &part.balls),
@@ -348,7 +310,13 @@ impl<'a> Measured<'a> {
                 offset,
                 fitted,
             }),
-            _ => return Err(MeshSceneError::BallFile { part: index }),
+            _ => {
+                return Err(of_part(
+                    index,
+                    "the part is balls already, which this sampler cannot take as they are",
+                    "dock files of balls with --sampler bi",
+                ));
+            }
         };
         let radii = found.balls.iter().map(|ball| ball.radius * self.unit);
         let (smallest_radius, radius) = radii

@@ -1,8 +1,18 @@
-//! Definitions of all options: name, subject, scope, help and default.
+//! Definitions of options: name, subject, scope, help and default, and the rule by which text becomes a value.
 //!
-//! All of it is read off the command line that clap derives from the structs of options.
+//! The macro `options!` makes the struct of a subject, its defaults and the definitions of its options from one list.
 
-use clap::{Arg, ArgAction, Args, Command, ValueHint};
+use std::fmt::Display;
+use std::path::Path;
+use std::str::FromStr;
+
+use knotdock_structures::Error;
+use serde::Serialize;
+use serde::de::value::StrDeserializer;
+use serde::de::{DeserializeOwned, IntoDeserializer};
+
+use super::DockOptions;
+use crate::plain_path::plain_path;
 
 /// Inputs that an option has an effect on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,38 +25,91 @@ pub enum Scope {
     Meshes,
 }
 
+/// Form of an option's value.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Form {
+    /// On if the option is given; no value.
+    Flag,
+    /// A value.
+    Value,
+    /// One of the names in [`Definition::value_name`].
+    Choice,
+    /// A value that may begin with a minus.
+    Signed,
+    /// Values with commas between them, or in several places.
+    List,
+    /// The name of a file.
+    File,
+}
+
+/// How the text of an option becomes a value, and which values it may have.
+pub trait Rule<T> {
+    /// The value of a text. Files are looked for from `folder`.
+    ///
+    /// # Errors
+    /// What the value must be; or the fault of a file, which the error then names.
+    fn read(&self, text: &str, folder: &Path) -> Result<T, Error>;
+
+    /// Refuses a value that no text could give.
+    ///
+    /// # Errors
+    /// What the value must be.
+    fn check(&self, _value: &T) -> Result<(), Error> {
+        Ok(())
+    }
+
+    /// The value as text; `None` if it is off, absent or too long for a line.
+    fn text(&self, value: &T) -> Option<String>;
+
+    /// The form of the value.
+    fn form(&self) -> Form {
+        Form::Value
+    }
+}
+
 /// One option.
-#[derive(Clone, Debug)]
+#[derive(Debug)]
 pub struct Definition {
-    subject: String,
-    scope: Scope,
-    argument: Arg,
+    pub(super) name: &'static str,
+    pub(super) long: String,
+    pub(super) heading: &'static str,
+    pub(super) subject: String,
+    pub(super) scope: Scope,
+    pub(super) help: Vec<String>,
+    pub(super) value_name: &'static str,
+    pub(super) form: Form,
+    pub(super) is_of_files: bool,
+    pub(super) access: Access,
+}
+
+/// Functions that read, check, show and compare the value of an option.
+#[derive(Debug)]
+pub(super) struct Access {
+    pub(super) read: fn(&mut DockOptions, &str, &Path) -> Result<(), Error>,
+    pub(super) check: fn(&DockOptions) -> Result<(), Error>,
+    pub(super) text: fn(&DockOptions) -> Option<String>,
+    pub(super) is_same: fn(&DockOptions, &DockOptions) -> bool,
 }
 
 impl Definition {
-    /// The definition of an argument: its heading in the help is the subject, and perhaps the scope in parentheses.
-    fn of(argument: &Arg) -> Self {
-        let heading = argument.get_help_heading().unwrap_or_default();
-        let (subject, scope) = match heading.split_once(" (") {
-            Some((subject, "molecules)")) => (subject, Scope::Molecules),
-            Some((subject, "meshes)")) => (subject, Scope::Meshes),
-            _ => (heading, Scope::Both),
-        };
-        Self {
-            subject: subject.to_lowercase(),
-            scope,
-            argument: argument.clone(),
-        }
-    }
-
     /// The name: of the field and of the key in files.
-    pub fn name(&self) -> &str {
-        self.argument.get_id().as_str()
+    pub fn name(&self) -> &'static str {
+        self.name
     }
 
     /// The name on the command line, without its dashes.
     pub fn long(&self) -> &str {
-        self.argument.get_long().unwrap_or_default()
+        &self.long
+    }
+
+    /// The heading of its group in the help, with the inputs that it has an effect on.
+    pub fn heading(&self) -> String {
+        let scope = match self.scope {
+            Scope::Both => "",
+            Scope::Molecules => " (molecules)",
+            Scope::Meshes => " (meshes)",
+        };
+        format!("{}{scope}", self.heading)
     }
 
     /// The subject: the name of the table in files.
@@ -59,57 +122,89 @@ impl Definition {
         self.scope
     }
 
-    /// The argument of a command line.
-    pub fn argument(&self) -> &Arg {
-        &self.argument
-    }
-
-    /// The help, details included.
+    /// The help, details included, a paragraph each.
     pub fn help(&self) -> String {
-        let (short, long) = (self.argument.get_help(), self.argument.get_long_help());
-        long.or(short).map(ToString::to_string).unwrap_or_default()
+        self.help.join("\n\n")
     }
 
-    /// The help in a line.
-    pub fn short_help(&self) -> String {
-        let help = self.argument.get_help();
-        help.map(ToString::to_string).unwrap_or_default()
+    /// The help in a line, without a period.
+    pub fn short_help(&self) -> &str {
+        let line = self.help.first().map_or("", String::as_str);
+        line.strip_suffix('.').unwrap_or(line)
+    }
+
+    /// The name of the value in the help: its unit or its choices.
+    pub fn value_name(&self) -> &'static str {
+        self.value_name
+    }
+
+    /// The form of the value.
+    pub fn form(&self) -> Form {
+        self.form
     }
 
     /// Whether only files of options give it, not words of a command line: weights and potentials, which were fitted
     /// and which few people change.
     pub fn is_of_files(&self) -> bool {
-        let name = self.name();
-        name.ends_with("_weight") || name.ends_with("_potential")
+        self.is_of_files
     }
 
-    /// Whether the value is the name of a file.
-    pub fn names_file(&self) -> bool {
-        names_file(&self.argument)
+    /// The default as text, if there is one.
+    pub fn default_text(&self) -> Option<String> {
+        self.text(&DockOptions::default())
     }
 
-    /// Whether the option is on where it is given, and takes no value.
-    pub fn is_flag(&self) -> bool {
-        matches!(self.argument.get_action(), ArgAction::SetTrue)
+    /// The value in some options as text, if it can be written in a line.
+    pub fn text(&self, options: &DockOptions) -> Option<String> {
+        (self.access.text)(options)
     }
 
-    /// Whether the option takes several values.
-    pub fn takes_several(&self) -> bool {
-        matches!(self.argument.get_action(), ArgAction::Append)
+    /// Whether two sets of options agree in this one.
+    pub fn is_same(&self, one: &DockOptions, other: &DockOptions) -> bool {
+        (self.access.is_same)(one, other)
     }
 
-    /// Whether there is a value where none is given.
-    pub(super) fn has_default(&self) -> bool {
-        !self.argument.get_default_values().is_empty()
+    /// Sets the option from text. Files are looked for from `folder`.
+    ///
+    /// # Errors
+    /// [`Error`] with what the value must be, or the fault of the named file.
+    pub fn read(&self, options: &mut DockOptions, text: &str, folder: &Path) -> Result<(), Error> {
+        (self.access.read)(options, text, folder)
     }
 
-    /// The word of a command line that gives the option a value.
-    pub fn word(&self, value: &str) -> String {
-        format!("--{}={value}", self.long())
+    /// As [`Self::read`], with an error for a command line.
+    ///
+    /// # Errors
+    /// As those of [`Self::read`]; they name the option.
+    pub fn set(&self, options: &mut DockOptions, text: &str) -> Result<(), Error> {
+        let read = self.read(options, text, Path::new(""));
+        read.map_err(|error| match error.file() {
+            Some(_) => error,
+            None => self.refusal(text, error.message()),
+        })
     }
-}
 
-impl Definition {
+    /// Refuses a value out of range.
+    ///
+    /// # Errors
+    /// [`Error`] that names option and value.
+    pub(super) fn check(&self, options: &DockOptions) -> Result<(), Error> {
+        (self.access.check)(options).map_err(|error| {
+            let value = self.text(options).unwrap_or_default();
+            self.refusal(&value, error.message())
+        })
+    }
+
+    /// The refusal of a value; `bound` states what it must be.
+    pub fn refusal(&self, value: &str, bound: &str) -> Error {
+        let name = &self.long;
+        let remedy = match self.is_of_files {
+            true => format!("see `{}` in `knotdock preset default --all`", self.name),
+            false => format!("see --{name} in `knotdock dock --help`"),
+        };
+        Error::input(format!("--{name} is {value}; {bound}")).help(remedy)
+    }
+
     /// The line of a file of options that gives the option a value, its table included: `terms.contact_weight=1.5`.
     pub fn line(&self, value: &str) -> String {
         let value = match value.parse::<f64>() {
@@ -117,124 +212,257 @@ impl Definition {
             // A text of JSON is one of TOML.
             Err(_) => serde_json::Value::from(value).to_string(),
         };
-        format!("{}.{}={value}", self.subject(), self.name())
+        format!("{}.{}={value}", self.subject, self.name)
     }
 }
 
-/// Whether the value of an argument is the name of a file.
-pub fn names_file(argument: &Arg) -> bool {
-    argument.get_value_hint() == ValueHint::FilePath
+/// Paragraphs of a doc comment, from its lines.
+pub(super) fn paragraphs(lines: &[&str]) -> Vec<String> {
+    let parts = lines.split(|line| line.trim().is_empty());
+    let joined = parts.map(|part| {
+        part.iter()
+            .map(|line| line.trim())
+            .collect::<Vec<_>>()
+            .join(" ")
+    });
+    joined.collect()
 }
 
-/// The options of a struct, in their order.
-pub fn definitions_of<T: Args>() -> Vec<Definition> {
-    let command = T::augment_args(Command::new("options"));
-    command.get_arguments().map(Definition::of).collect()
+/// Defines the struct of a subject: `NAME as FIELD, "HEADING", SCOPE { OPTIONS }`. FIELD is its field in
+/// [`DockOptions`], HEADING its heading in the help and, in lower case, its table in files.
+///
+/// An option is `name: Type = default, "VALUE", rule;` under its doc comment, which is its help. VALUE is the name of
+/// the value in the help. `in files` after the rule leaves the option out of command lines.
+macro_rules! options {
+    (
+        $(#[doc = $about:literal])*
+        $name:ident as $field:ident, $heading:literal, $scope:ident {
+            $(
+                $(#[doc = $doc:literal])+
+                $(#[serde($($serde:tt)*)])?
+                $option:ident: $type:ty = $default:expr, $value:literal, $rule:expr $(, in $files:ident)?;
+            )*
+        }
+    ) => {
+        $(#[doc = $about])*
+        #[derive(Clone, Debug, PartialEq, serde::Serialize, serde::Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub struct $name {
+            $(
+                $(#[doc = $doc])+
+                $(#[serde($($serde)*)])?
+                pub $option: $type,
+            )*
+        }
+
+        impl Default for $name {
+            fn default() -> Self {
+                Self { $($option: $default,)* }
+            }
+        }
+
+        impl $name {
+            /// The definitions of its options.
+            pub(in crate::options) fn definitions() -> Vec<$crate::options::definition::Definition> {
+                use $crate::options::definition::{Access, Definition, Rule, Scope, paragraphs};
+                vec![$(Definition {
+                    name: stringify!($option),
+                    long: stringify!($option).replace('_', "-"),
+                    heading: $heading,
+                    subject: $heading.to_lowercase(),
+                    scope: Scope::$scope,
+                    help: paragraphs(&[$($doc),+]),
+                    value_name: $value,
+                    form: Rule::<$type>::form(&$rule),
+                    is_of_files: !["", $(stringify!($files))?].concat().is_empty(),
+                    access: Access {
+                        read: |options, text, folder| {
+                            options.$field.$option = Rule::<$type>::read(&$rule, text, folder)?;
+                            Ok(())
+                        },
+                        check: |options| Rule::<$type>::check(&$rule, &options.$field.$option),
+                        text: |options| Rule::<$type>::text(&$rule, &options.$field.$option),
+                        is_same: |one, other| one.$field.$option == other.$field.$option,
+                    },
+                },)*]
+            }
+        }
+    };
+}
+pub(super) use options;
+
+/// A flag.
+pub(super) struct Flag;
+
+impl Rule<bool> for Flag {
+    fn read(&self, text: &str, _: &Path) -> Result<bool, Error> {
+        let value = text.parse();
+        value.map_err(|_| Error::input("it must be true or false"))
+    }
+
+    fn text(&self, value: &bool) -> Option<String> {
+        value.then(|| "true".to_owned())
+    }
+
+    fn form(&self) -> Form {
+        Form::Flag
+    }
 }
 
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::options::values::number;
-    use crate::options::{DockOptions, KernelOptions, definitions, file, text};
-    use serde::{Deserialize, Serialize};
+/// A value that serde reads from text and writes as text.
+pub(super) struct Word;
 
-    /// A subject with a new option, which is stated here and nowhere else.
-    #[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
-    #[command(next_help_heading = "Invented (meshes)")]
-    #[serde(deny_unknown_fields)]
-    struct InventedOptions {
-        /// Weight of inventions: score per patent.
-        #[arg(long, value_name = "X", value_parser = number(0.0..=9.0), default_value_t = 2.5)]
-        novelty_weight: f64,
-        /// Leave out what is known.
-        #[arg(long)]
-        novel_only: bool,
+impl<T: DeserializeOwned + Serialize> Rule<T> for Word {
+    fn read(&self, text: &str, _: &Path) -> Result<T, Error> {
+        let text: StrDeserializer<'_, serde::de::value::Error> = text.into_deserializer();
+        T::deserialize(text).map_err(Error::input)
     }
 
-    #[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
-    #[serde(deny_unknown_fields)]
-    struct WithInvented {
-        #[command(flatten)]
-        kernel: KernelOptions,
-        #[command(flatten)]
-        invented: InventedOptions,
+    fn text(&self, value: &T) -> Option<String> {
+        Some(name_of(value))
+    }
+}
+
+/// One of the names that serde gives to the variants of an enum.
+pub(super) struct Choice;
+
+impl<T: DeserializeOwned + Serialize> Rule<T> for Choice {
+    fn read(&self, text: &str, folder: &Path) -> Result<T, Error> {
+        // serde's sentence is "unknown variant `x`, expected `a` or `b`".
+        Word.read(text, folder).map_err(|error: Error| {
+            let text = error.to_string();
+            let names = text
+                .split_once("expected ")
+                .map_or(text.as_str(), |(_, names)| names);
+            Error::input(format!("it must be {}", names.replace('`', "")))
+        })
     }
 
-    /// The new option is in the help, the command line, the defaults, the record, the file and the checks, and can be
-    /// varied by name.
-    #[test]
-    fn a_new_option_arrives_everywhere() {
-        let mut command = WithInvented::augment_args(Command::new("dock"));
-        let help = command.render_long_help().to_string();
-        for part in [
-            "Invented (meshes):",
-            "--novelty-weight <X>",
-            "score per patent",
-            "[default: 2.5]",
-            "--novel-only",
-        ] {
-            assert!(help.contains(part), "{part}: {help}");
-        }
-
-        let default: WithInvented = text::defaults();
-        assert_eq!(default.invented.novelty_weight, 2.5);
-        let typed = ["--novelty-weight=3", "--novel-only"].map(Into::into);
-        let typed: WithInvented = text::read(typed).unwrap();
-        assert!(typed.invented.novel_only && typed.invented.novelty_weight == 3.0);
-
-        let record = serde_json::to_value(&typed).unwrap();
-        assert_eq!(record["invented"]["novelty_weight"], 3.0);
-        assert_eq!(serde_json::from_value(record).ok(), Some(typed.clone()));
-
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("run.toml");
-        std::fs::write(&path, "[invented]\nnovelty_weight = 3\nnovel_only = true\n").unwrap();
-        let words = file::read::<WithInvented>(&path).unwrap();
-        let words = words.into_iter().flat_map(|entry| entry.words);
-        assert_eq!(text::read(words.map(Into::into)).ok(), Some(typed.clone()));
-
-        let more = text::with(&typed, "novelty_weight", "4.5").unwrap();
-        assert_eq!(more.invented.novelty_weight, 4.5);
-        assert!(more.invented.novel_only);
-        assert!(text::with(&typed, "novelty_weight", "9.5").is_err());
-        assert!(text::with(&typed, "novelty", "1").is_err());
-
-        assert_eq!(text::check(&typed), Ok(()));
-        for (value, shown) in [(9.5, "9.5"), (-1.0, "-1.0"), (f64::NAN, "not finite")] {
-            let mut wrong = typed.clone();
-            wrong.invented.novelty_weight = value;
-            let error = text::check(&wrong).unwrap_err();
-            let expected = ("novelty-weight", shown);
-            assert_eq!((error.name.as_str(), error.value.as_str()), expected);
-        }
-
-        let definitions = definitions_of::<WithInvented>();
-        let given: Vec<_> = text::given(&typed, &default, &definitions).collect();
-        let names: Vec<_> = given.iter().map(|option| option.name()).collect();
-        assert_eq!(names, ["novelty_weight", "novel_only"]);
-        assert!(given.iter().all(|option| option.scope() == Scope::Meshes));
+    fn text(&self, value: &T) -> Option<String> {
+        Word.text(value)
     }
 
-    /// The heading of each option is the name of its struct's field, and its name that of its own field: so the
-    /// command line, files and records agree. Options of the machine are in no record.
-    #[test]
-    fn names_and_headings_are_those_of_the_fields() {
-        let record = serde_json::to_value(DockOptions::default()).unwrap();
-        let mut recorded: Vec<String> = Vec::new();
-        for (subject, options) in record.as_object().unwrap() {
-            let options = options.as_object().into_iter().flatten();
-            recorded.extend(options.map(|(name, _)| format!("{subject}.{name}")));
+    fn form(&self) -> Form {
+        Form::Choice
+    }
+}
+
+/// The name of a choice.
+pub fn name_of(choice: impl Serialize) -> String {
+    match serde_json::to_value(choice) {
+        Ok(serde_json::Value::String(name)) => name,
+        _ => String::new(),
+    }
+}
+
+/// A value of a type that reads and writes itself.
+pub(super) struct Parsed;
+
+impl<T: FromStr<Err: Display> + Display> Rule<T> for Parsed {
+    fn read(&self, text: &str, _: &Path) -> Result<T, Error> {
+        text.parse().map_err(Error::input)
+    }
+
+    fn text(&self, value: &T) -> Option<String> {
+        Some(value.to_string())
+    }
+}
+
+/// As [`Parsed`], of a value that may begin with a minus.
+pub(super) struct Signed;
+
+impl<T: FromStr<Err: Display> + Display> Rule<T> for Signed {
+    fn read(&self, text: &str, folder: &Path) -> Result<T, Error> {
+        Parsed.read(text, folder)
+    }
+
+    fn text(&self, value: &T) -> Option<String> {
+        Parsed.text(value)
+    }
+
+    fn form(&self) -> Form {
+        Form::Signed
+    }
+}
+
+/// A value that may be absent.
+pub(super) struct Optional<R>(pub(super) R);
+
+impl<T, R: Rule<T>> Rule<Option<T>> for Optional<R> {
+    fn read(&self, text: &str, folder: &Path) -> Result<Option<T>, Error> {
+        self.0.read(text, folder).map(Some)
+    }
+
+    fn check(&self, value: &Option<T>) -> Result<(), Error> {
+        value.as_ref().map_or(Ok(()), |value| self.0.check(value))
+    }
+
+    fn text(&self, value: &Option<T>) -> Option<String> {
+        value.as_ref().and_then(|value| self.0.text(value))
+    }
+
+    fn form(&self) -> Form {
+        self.0.form()
+    }
+}
+
+/// A name. It states what is needed, for a text that is none.
+pub(super) struct Name(pub(super) &'static str);
+
+impl Rule<String> for Name {
+    fn read(&self, text: &str, _: &Path) -> Result<String, Error> {
+        let name = text.trim().to_owned();
+        self.check(&name).map(|()| name)
+    }
+
+    fn check(&self, name: &String) -> Result<(), Error> {
+        match name.trim().is_empty() {
+            true => Err(Error::input(self.0)),
+            false => Ok(()),
         }
-        let defined: Vec<String> = definitions()
-            .iter()
-            .filter(|option| option.subject() != "machine")
-            .map(|option| format!("{}.{}", option.subject(), option.name()))
-            .collect();
-        assert_eq!(recorded, defined);
-        for option in definitions() {
-            assert_eq!(option.long(), option.name().replace('_', "-"));
-            assert!(!option.help().is_empty(), "{}", option.name());
-        }
+    }
+
+    fn text(&self, name: &String) -> Option<String> {
+        Some(name.clone())
+    }
+}
+
+/// Names with commas between them.
+pub(super) struct Names(pub(super) Name);
+
+impl Rule<Vec<String>> for Names {
+    fn read(&self, text: &str, folder: &Path) -> Result<Vec<String>, Error> {
+        text.split(',')
+            .map(|name| self.0.read(name, folder))
+            .collect()
+    }
+
+    fn check(&self, names: &Vec<String>) -> Result<(), Error> {
+        names.iter().try_for_each(|name| self.0.check(name))
+    }
+
+    fn text(&self, names: &Vec<String>) -> Option<String> {
+        (!names.is_empty()).then(|| names.join(","))
+    }
+
+    fn form(&self) -> Form {
+        Form::List
+    }
+}
+
+/// The content of a file.
+pub(super) struct Content<T>(pub(super) fn(&Path) -> Result<T, Error>);
+
+impl<T> Rule<T> for Content<T> {
+    fn read(&self, text: &str, folder: &Path) -> Result<T, Error> {
+        (self.0)(&plain_path(&folder.join(text)))
+    }
+
+    fn text(&self, _: &T) -> Option<String> {
+        None
+    }
+
+    fn form(&self) -> Form {
+        Form::File
     }
 }

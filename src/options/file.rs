@@ -1,4 +1,4 @@
-//! The file of `--config`: any of the options, in TOML, a table a subject.
+//! The file of `--config`: any of the options, in TOML, a table for each subject.
 //!
 //! ```toml
 //! [search]
@@ -8,101 +8,130 @@
 //! contact_weight = 1.5
 //! ```
 //!
-//! A value is what may be typed for the option, as text or as a number. One line may stand for a file:
+//! A value is text as on the command line, or a number. One line may replace a file:
 //! `--config terms.contact_weight=1.5`.
 
 use std::ops::Range;
-use std::path::{Path, PathBuf};
-use std::sync::Arc;
+use std::path::Path;
 
-use clap::Args;
+use knotdock_structures::Error;
 use toml::Spanned;
 use toml::de::{DeString, DeTable, DeValue};
 
-use super::definition::{Definition, definitions_of};
-use super::text;
+use super::definition::{Definition, Form};
+use super::{DockOptions, definitions};
 use crate::bounded_read::{MAX_OPTIONS, read_bounded_text};
-use crate::plain_path::plain_path;
 
-/// An option that a file gives a value.
+/// An option that was given, with its value as text.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Entry {
-    /// Name of the option.
-    pub name: String,
-    /// The words of a command line for it; none for a flag that is off.
-    pub words: Vec<String>,
+pub struct GivenOption {
+    /// The option's name.
+    pub name: &'static str,
+    /// The value as it was written.
+    pub text: String,
 }
 
-/// Why a file of options cannot be used.
-#[derive(Clone, Debug, thiserror::Error)]
-#[error("{message}")]
-pub struct ConfigError {
-    /// The file.
-    pub path: PathBuf,
-    /// 1-based line, where one is at fault.
-    pub line: Option<u64>,
-    /// The fault, in words.
-    pub message: String,
-    /// Remedy for the user.
-    pub remedy: String,
-    /// Why a value was refused, where one was: it may be the name of a file with a fault of its own.
-    pub refused: Option<Arc<clap::Error>>,
+impl DockOptions {
+    /// Sets the options of a file; returns them.
+    ///
+    /// # Errors
+    /// [`Error`] for a file that cannot be read or is not TOML, an unknown table or option, and a value out of range.
+    pub fn read_file(&mut self, path: &Path) -> Result<Vec<GivenOption>, Error> {
+        let text = read_bounded_text(path, MAX_OPTIONS).map_err(|error| {
+            Error::input(format!("the file of options cannot be read: {error}"))
+                .at(path)
+                .help(
+                    "check its name; `knotdock preset default > FILE` writes one to change, and one option may stand \
+                     for a file, as in --config search.rotations=600",
+                )
+        })?;
+        self.read_toml(&text, path)
+    }
+
+    /// Sets the options of a text in TOML; returns them. Files that it names are looked for from the folder of `path`,
+    /// which errors name.
+    ///
+    /// # Errors
+    /// As those of [`Self::read_file`].
+    pub fn read_toml(&mut self, text: &str, path: &Path) -> Result<Vec<GivenOption>, Error> {
+        let folder = path.parent().unwrap_or(Path::new(""));
+        let mut read = || {
+            let document = DeTable::parse(text).map_err(|error| Fault {
+                span: error.span(),
+                error: Error::input(error.message())
+                    .help("write TOML: tables such as [search], and lines such as rotations = 900"),
+            })?;
+            let mut given = Vec::new();
+            for (subject, table) in document.into_inner() {
+                let DeValue::Table(table) = table.into_inner() else {
+                    return Err(no_table(&subject));
+                };
+                if !definitions()
+                    .iter()
+                    .any(|one| one.subject() == subject.get_ref().as_ref())
+                {
+                    return Err(no_table(&subject));
+                }
+                for (name, value) in table {
+                    given.push(self.read_entry(&subject, &name, value, folder)?);
+                }
+            }
+            Ok(given)
+        };
+        read().map_err(|Fault { span, error }| match (error.file(), span) {
+            // The fault is in a file that the option names.
+            (Some(_), span) => {
+                let remedy = error.remedy().unwrap_or_default();
+                let line = span.map(|span| format!(", line {}", line_at(text, span.start)));
+                let line = line.unwrap_or_default();
+                let named = format!("{remedy}; {}{line} names the file", path.display());
+                error.help(named)
+            }
+            (None, span) => error
+                .at(path)
+                .on_line(span.map(|span| line_at(text, span.start))),
+        })
+    }
+
+    /// Sets the option of an entry.
+    fn read_entry(
+        &mut self,
+        subject: &Spanned<DeString<'_>>,
+        name: &Spanned<DeString<'_>>,
+        value: Spanned<DeValue<'_>>,
+        folder: &Path,
+    ) -> Result<GivenOption, Fault> {
+        let is_named = |one: &&Definition| {
+            one.subject() == subject.get_ref().as_ref() && one.name() == name.get_ref().as_ref()
+        };
+        let Some(option) = definitions().iter().find(is_named) else {
+            return Err(no_option(name, subject.get_ref()));
+        };
+        let fault = |error| Fault {
+            span: Some(value.span()),
+            error,
+        };
+        let text = text_of(option, value.get_ref()).map_err(fault)?;
+        let read = option.read(self, &text, folder);
+        read.map_err(|error| match error.file() {
+            Some(_) => fault(error),
+            None => {
+                let remedy = option.refusal("", "");
+                let message = format!("{} = {text}: {error}", option.name());
+                fault(Error::input(message).help(remedy.remedy().unwrap_or_default()))
+            }
+        })?;
+        Ok(GivenOption {
+            name: option.name(),
+            text,
+        })
+    }
 }
 
-/// Reads a file with options of a struct.
-///
-/// # Errors
-/// [`ConfigError`] for a file that cannot be read or is not TOML, an unknown table or option, and a value out of range.
-pub fn read<T: Args>(path: &Path) -> Result<Vec<Entry>, ConfigError> {
-    let text = read_bounded_text(path, MAX_OPTIONS).map_err(|error| ConfigError {
-        path: path.to_owned(),
-        line: None,
-        message: format!("the file of options cannot be read: {error}"),
-        remedy: "check its name; `knotdock preset default > FILE` writes one to change, and one option may stand for a \
-                 file, as in --config search.rotations=600"
-            .to_owned(),
-        refused: None,
-    })?;
-    read_text::<T>(&text, path)
-}
-
-/// Reads the text of a file with options of a struct. Files that it names are looked for from the folder of `path`,
-/// which errors name.
-///
-/// # Errors
-/// As those of [`read`].
-pub fn read_text<T: Args>(text: &str, path: &Path) -> Result<Vec<Entry>, ConfigError> {
-    let folder = path.parent().unwrap_or(Path::new(""));
-    entries::<T>(text, folder).map_err(|wrong| ConfigError {
-        path: path.to_owned(),
-        line: wrong.span.map(|span| line_at(text, span.start)),
-        message: wrong.message,
-        remedy: wrong.remedy,
-        refused: wrong.refused,
-    })
-}
-
-/// Reads one line with an option, such as `terms.contact_weight=1.5`. A file that it names is looked for from the
-/// working directory.
-///
-/// # Errors
-/// As those of [`read`]; they name the line in a file's place.
-pub fn read_line<T: Args>(line: &str) -> Result<Vec<Entry>, ConfigError> {
-    entries::<T>(line, Path::new("")).map_err(|wrong| ConfigError {
-        path: PathBuf::from(line),
-        line: None,
-        message: wrong.message,
-        remedy: wrong.remedy,
-        refused: wrong.refused,
-    })
-}
-
-/// The fault in a part of a file.
-struct Wrong {
+/// A fault at a place in the text.
+struct Fault {
     span: Option<Range<usize>>,
-    message: String,
-    remedy: String,
-    refused: Option<Arc<clap::Error>>,
+    error: Error,
 }
 
 /// 1-based line of a byte.
@@ -111,188 +140,121 @@ fn line_at(text: &str, byte: usize) -> u64 {
     1 + before.filter(|byte| **byte == b'\n').count() as u64
 }
 
-/// The options that a text gives. Files that it names are looked for from `folder`.
-fn entries<T: Args>(text: &str, folder: &Path) -> Result<Vec<Entry>, Wrong> {
-    let definitions = definitions_of::<T>();
-    let document = DeTable::parse(text).map_err(|error| Wrong {
-        span: error.span(),
-        message: error.message().to_owned(),
-        remedy: "write TOML: tables such as [search], and lines such as rotations = 900".to_owned(),
-        refused: None,
-    })?;
-    let mut entries = Vec::new();
-    for (subject, table) in document.into_inner() {
-        let known = |option: &&Definition| option.subject() == subject.get_ref().as_ref();
-        let options: Vec<&Definition> = definitions.iter().filter(known).collect();
-        let (false, DeValue::Table(table)) = (options.is_empty(), table.into_inner()) else {
-            return Err(no_table(&subject, &definitions));
-        };
-        for (name, value) in table {
-            let known = |option: &&&Definition| option.name() == name.get_ref().as_ref();
-            let Some(option) = options.iter().find(known) else {
-                return Err(no_option(&name, subject.get_ref(), &definitions));
-            };
-            let (span, value) = (value.span(), value.into_inner());
-            let wrong = |message: String| Wrong {
-                span: Some(span.clone()),
-                message,
-                remedy: remedy_of(option),
-                refused: None,
-            };
-            let words = words(option, &value, folder).map_err(wrong)?;
-            text::read::<T>(words.iter().map(Into::into)).map_err(|error| {
-                let refused = text::refused(&error);
-                let message = format!(
-                    "{} = {}: it must be {}",
-                    option.name(),
-                    refused.value,
-                    refused.bound
-                );
-                Wrong {
-                    refused: Some(Arc::new(error)),
-                    ..wrong(message)
-                }
-            })?;
-            entries.push(Entry {
-                name: option.name().to_owned(),
-                words,
-            });
-        }
-    }
-    Ok(entries)
-}
-
-/// Where an option is described.
-fn remedy_of(option: &Definition) -> String {
-    match option.is_of_files() {
-        true => format!("see `{}` in `knotdock preset default --all`", option.name()),
-        false => format!("see --{} in `knotdock dock --help`", option.long()),
-    }
-}
-
-/// A table that no subject has, or an option outside of a table.
-fn no_table(found: &Spanned<DeString<'_>>, definitions: &[Definition]) -> Wrong {
+/// A table that is no subject, or an option outside of a table.
+fn no_table(found: &Spanned<DeString<'_>>) -> Fault {
     let name = found.get_ref().as_ref();
-    let mut subjects: Vec<&str> = definitions.iter().map(Definition::subject).collect();
-    subjects.dedup();
-    let option = definitions.iter().find(|option| option.name() == name);
+    let option = definitions().iter().find(|option| option.name() == name);
     let remedy = match option {
         Some(option) => format!(
             "put `{name}` into the table [{0}]: {0}.{name} = ...",
             option.subject()
         ),
-        None => format!("the tables are [{}]", subjects.join("], [")),
+        None => {
+            let mut subjects: Vec<&str> = definitions().iter().map(Definition::subject).collect();
+            subjects.dedup();
+            format!("the tables are [{}]", subjects.join("], ["))
+        }
     };
-    Wrong {
+    Fault {
         span: Some(found.span()),
-        message: format!("`{name}` is no table of options"),
-        remedy,
-        refused: None,
+        error: Error::input(format!("`{name}` is no table of options")).help(remedy),
     }
 }
 
 /// An option that its subject does not have.
-fn no_option(found: &Spanned<DeString<'_>>, subject: &str, definitions: &[Definition]) -> Wrong {
+fn no_option(found: &Spanned<DeString<'_>>, subject: &str) -> Fault {
     let name = found.get_ref().as_ref();
     let spelled = name.replace('-', "_");
-    let elsewhere = definitions.iter().find(|option| option.name() == spelled);
+    let elsewhere = definitions().iter().find(|option| option.name() == spelled);
     let remedy = match elsewhere {
         Some(option) => format!("write `{spelled}` in the table [{}]", option.subject()),
         None => {
-            let own = definitions.iter().filter(|one| one.subject() == subject);
+            let own = definitions().iter().filter(|one| one.subject() == subject);
             let names: Vec<&str> = own.map(Definition::name).collect();
             format!("the options of [{subject}] are {}", names.join(", "))
         }
     };
-    Wrong {
+    Fault {
         span: Some(found.span()),
-        message: format!("there is no option `{name}` in [{subject}]"),
-        remedy,
-        refused: None,
+        error: Error::input(format!("there is no option `{name}` in [{subject}]")).help(remedy),
     }
 }
 
-/// The words of a command line for a value.
-fn words(option: &Definition, value: &DeValue<'_>, folder: &Path) -> Result<Vec<String>, String> {
-    if option.is_flag() {
-        return match value {
-            DeValue::Boolean(true) => Ok(vec![format!("--{}", option.long())]),
-            DeValue::Boolean(false) => Ok(Vec::new()),
-            _ => Err(format!("{} must be true or false", option.name())),
-        };
-    }
-    let text = |value: &DeValue<'_>| match value {
-        DeValue::String(text) if option.names_file() => {
-            let path = plain_path(&folder.join(text.as_ref()));
-            Ok(path.to_string_lossy().into_owned())
+/// A value as the text of a command line.
+fn text_of(option: &Definition, value: &DeValue<'_>) -> Result<String, Error> {
+    match (option.form(), value) {
+        (Form::Flag, DeValue::Boolean(truth)) => Ok(truth.to_string()),
+        (Form::Flag, _) => Err(Error::input(format!(
+            "{} must be true or false",
+            option.name()
+        ))),
+        (Form::List, DeValue::Array(values)) => {
+            let texts = values.iter().map(|value| text_of(option, value.get_ref()));
+            Ok(texts.collect::<Result<Vec<_>, _>>()?.join(","))
         }
-        DeValue::String(text) => Ok(text.to_string()),
-        DeValue::Integer(number) => {
-            // Hexadecimal and the like, too.
-            let decimal = i64::from_str_radix(number.as_str(), number.radix());
-            decimal
-                .map(|number| number.to_string())
-                .map_err(|error| error.to_string())
-        }
-        DeValue::Float(number) => Ok(number.as_str().to_owned()),
-        DeValue::Boolean(truth) => Ok(truth.to_string()),
-        _ => Err(format!("{} must be text or a number", option.name())),
-    };
-    match value {
-        DeValue::Array(values) if option.takes_several() => values
-            .iter()
-            .map(|value| Ok(option.word(&text(value.get_ref())?)))
-            .collect(),
-        value => Ok(vec![option.word(&text(value)?)]),
+        (_, DeValue::String(text)) => Ok(text.to_string()),
+        // Hexadecimal and the like, too.
+        (_, DeValue::Integer(number)) => i64::from_str_radix(number.as_str(), number.radix())
+            .map(|number| number.to_string())
+            .map_err(Error::input),
+        (_, DeValue::Float(number)) => Ok(number.as_str().to_owned()),
+        _ => Err(Error::input(format!(
+            "{} must be text or a number",
+            option.name()
+        ))),
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::options::DockOptions;
 
-    fn words_of(text: &str) -> Vec<String> {
-        let entries = match entries::<DockOptions>(text, Path::new("folder")) {
-            Ok(entries) => entries,
-            Err(wrong) => panic!("{}", wrong.message),
-        };
-        entries.into_iter().flat_map(|entry| entry.words).collect()
-    }
-
-    /// The line, the message and the remedy of what is wrong.
-    fn wrong_in(text: &str) -> (Option<u64>, String) {
-        let Err(wrong) = entries::<DockOptions>(text, Path::new("")) else {
-            panic!("{text}");
-        };
-        let line = wrong.span.map(|span| line_at(text, span.start));
-        (line, format!("{}; {}", wrong.message, wrong.remedy))
+    /// The options that a text gives.
+    fn given(text: &str) -> Vec<GivenOption> {
+        let path = Path::new("folder/run.toml");
+        DockOptions::default().read_toml(text, path).unwrap()
     }
 
     #[test]
     fn values_are_text_numbers_truths_and_lists() {
-        for (text, words) in [
-            ("[search]\nrotations = \"15deg\"", "--rotations=15deg"),
-            ("search.rotations = 1_000", "--rotations=1000"),
-            ("[kernel]\ntolerance = 1e-3", "--tolerance=1e-3"),
-            ("[kernel]\nlambda = 3", "--lambda=3"),
-            ("[sampling]\nsample_grid = 0x8000", "--sample-grid=32768"),
-            ("[ranking]\nno_cluster = true", "--no-cluster"),
-            ("[ranking]\nno_cluster = false", ""),
-            ("[machine]\nmemory = \"4GiB\"", "--memory=4GiB"),
-            ("[input]\nmodel = 2", "--model=2"),
+        for (text, name, value) in [
+            ("[search]\nrotations = \"15deg\"", "rotations", "15deg"),
+            ("search.rotations = 1_000", "rotations", "1000"),
+            ("[kernel]\ntolerance = 1e-3", "tolerance", "1e-3"),
+            ("[kernel]\nlambda = 3", "lambda", "3"),
+            ("[sampling]\nsample_grid = 0x8000", "sample_grid", "32768"),
+            ("[ranking]\nno_cluster = true", "no_cluster", "true"),
+            ("[ranking]\nno_cluster = false", "no_cluster", "false"),
+            ("[machine]\nmemory = \"4GiB\"", "memory", "4GiB"),
+            ("[input]\nmodel = 2", "model", "2"),
             (
                 "[input]\ndrop_residue = [\"HEM\", \"ZN\"]",
-                "--drop-residue=HEM --drop-residue=ZN",
+                "drop_residue",
+                "HEM,ZN",
             ),
-            ("# nothing\n[terms]\n", ""),
         ] {
-            assert_eq!(words_of(text).join(" "), words, "{text}");
+            let text_of_value = value.to_owned();
+            let expected = vec![GivenOption {
+                name,
+                text: text_of_value,
+            }];
+            assert_eq!(given(text), expected, "{text}");
         }
+        assert_eq!(given("# nothing\n[terms]\n"), []);
+        let mut options = DockOptions::default();
+        let text = "[input]\ndrop_residue = [\"HEM\", \"ZN\"]\n[ranking]\nno_cluster = true\n[search]\nrotations = 9";
+        options.read_toml(text, Path::new("")).unwrap();
+        assert_eq!(options.input.drop_residue, ["HEM", "ZN"]);
+        assert!(options.ranking.no_cluster && options.search.rotations == 9);
+        // A later file wins, also over a flag.
+        let later = "ranking.no_cluster = false\n[input]\ndrop_residue = \"SO4\"";
+        options.read_toml(later, Path::new("")).unwrap();
+        assert_eq!(options.input.drop_residue, ["SO4"]);
+        assert!(!options.ranking.no_cluster && options.search.rotations == 9);
     }
 
     #[test]
-    fn what_is_wrong_is_found_by_its_line() {
+    fn faults_have_their_line() {
         for (text, line, part) in [
             ("[search]\nrotations = 0\n", 2, "between 1 and 10000000"),
             ("[search]\n\nrotation = 9\n", 3, "fine_rotations"),
@@ -308,11 +270,14 @@ mod tests {
             ("[search]\nrotations = 9\nrotations = 8\n", 3, "duplicate"),
             ("[ranking]\nno_cluster = 1\n", 2, "true or false"),
             ("[kernel]\nlambda = inf\n", 2, "finite"),
-            ("[search]\nprecision = \"half\"\n", 2, "single, double"),
+            ("[search]\nprecision = \"half\"\n", 2, "single or double"),
             ("[search\n", 1, "TOML"),
         ] {
-            let (found, message) = wrong_in(text);
-            assert_eq!(found, Some(line), "{text}: {message}");
+            let path = Path::new("run.toml");
+            let error = DockOptions::default().read_toml(text, path).unwrap_err();
+            let message = format!("{error}; {}", error.remedy().unwrap());
+            assert_eq!(error.line(), Some(line), "{text}: {message}");
+            assert_eq!(error.file(), Some(path));
             assert!(message.contains(part), "{text}: {message}");
         }
     }
@@ -326,10 +291,30 @@ mod tests {
         let text = "[terms]\ncontact_potential = \"own.csv\"\n";
         let path = folder.path().join("run.toml");
         std::fs::write(&path, text).unwrap();
-        let entries = read::<DockOptions>(&path).unwrap();
-        let expected = folder.path().join("own.csv").display().to_string();
-        assert!(entries[0].words[0].ends_with(&expected));
+        let mut options = DockOptions::default();
+        options.read_file(&path).unwrap();
+        assert!(options.terms.contact_potential.is_some());
         std::fs::write(&path, text.replace("own", "other")).unwrap();
-        assert_eq!(read::<DockOptions>(&path).unwrap_err().line, Some(2));
+        let error = options.read_file(&path).unwrap_err();
+        assert_eq!(
+            error.file(),
+            Some(folder.path().join("other.csv").as_path())
+        );
+        let remedy = error.remedy().unwrap();
+        assert!(
+            remedy.ends_with("run.toml, line 2 names the file"),
+            "{remedy}"
+        );
+    }
+
+    /// `bfactor` is no file, wherever the file of options lies.
+    #[test]
+    fn words_in_place_of_a_file_are_no_paths() {
+        let mut options = DockOptions::default();
+        let text = "restraints.interface_receptor = \"bfactor\"";
+        options
+            .read_toml(text, Path::new("folder/run.toml"))
+            .unwrap();
+        assert!(options.restraints.interface_receptor.is_some());
     }
 }

@@ -7,7 +7,7 @@ use knotdock_scoring::terms::pose::Membrane;
 use knotdock_structures::molecule::Molecule;
 use serde::{Deserialize, Serialize};
 
-use crate::error::SearchError;
+use knotdock_structures::Error;
 
 /// Where a membrane lies: between two planes across the z axis of one molecule's file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -34,13 +34,20 @@ impl MembraneChoice {
     /// The membrane of two molecules.
     ///
     /// # Errors
-    /// [`SearchError::NoMembrane`] where the file that should mark its planes does not.
-    pub(crate) fn of(self, molecules: [&Molecule; 2]) -> Result<Membrane, SearchError> {
+    /// [`Error`] where the file that should mark its planes does not.
+    pub(crate) fn of(self, molecules: [&Molecule; 2]) -> Result<Membrane, Error> {
         match self {
             Self::Between(low, high) => Ok(Membrane { side: 0, low, high }),
             Self::Marked(side) => match molecules[side].report.membrane {
                 Some([low, high]) => Ok(Membrane { side, low, high }),
-                None => Err(SearchError::NoMembrane { side: SIDES[side] }),
+                None => Err(Error::input(format!(
+                    "the file of the {} marks no flat membrane across its z axis",
+                    SIDES[side]
+                ))
+                .help(
+                    "give a file of OPM or PPM, which has two planes of DUM records, or the lowest and highest z in Å \
+                     as in --membrane=-15,15",
+                )),
             },
         }
     }

@@ -1,21 +1,17 @@
 //! Options on what a run writes.
 
-use clap::Args;
-use serde::{Deserialize, Serialize};
+use super::definition::{Flag, options};
+use super::values::NOT_NEGATIVE;
 
-/// What a run writes.
-#[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[command(next_help_heading = "Output")]
-#[serde(deny_unknown_fields)]
-pub struct OutputOptions {
-    /// Complexes to write to top/.
-    #[arg(long, value_name = "COUNT", default_value_t = 10)]
-    pub write_top: usize,
-    /// Add the diagnostic columns to poses.csv.
-    #[arg(long)]
-    pub diagnostics: bool,
-    /// Write no report.html.
-    #[arg(long)]
-    #[serde(default)]
-    pub no_report: bool,
+options! {
+    /// What a run writes.
+    OutputOptions as output, "Output", Both {
+        /// Complexes to write to top/.
+        write_top: usize = 10, "COUNT", NOT_NEGATIVE;
+        /// Add the diagnostic columns to poses.csv.
+        diagnostics: bool = false, "", Flag;
+        /// Write no report.html.
+        #[serde(default)]
+        no_report: bool = false, "", Flag;
+    }
 }

@@ -4,41 +4,58 @@
 
 use std::path::Path;
 
-use clap::ValueEnum;
+use knotdock_structures::Error;
 
 use super::DockOptions;
-use super::file::{ConfigError, Entry, read_text};
+use super::file::GivenOption;
 
 /// A set of options with a name.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Preset {
-    /// A first look, in about half the time.
-    Fast,
-    /// What a run without a preset does.
-    Default,
-    /// A second search about the best poses, in about twice the time.
-    Thorough,
-    /// How surfaces fit, and nothing else.
-    Shape,
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Preset {
+    /// Its name.
+    pub name: &'static str,
+    /// What it is for.
+    pub about: &'static str,
+    /// Its file of options.
+    pub text: &'static str,
 }
 
 impl Preset {
-    /// Its file of options.
-    pub fn text(self) -> &'static str {
-        match self {
-            Self::Fast => include_str!("presets/fast.toml"),
-            Self::Default => include_str!("presets/default.toml"),
-            Self::Thorough => include_str!("presets/thorough.toml"),
-            Self::Shape => include_str!("presets/shape.toml"),
-        }
+    /// All presets.
+    pub const ALL: [Self; 4] = [
+        Self {
+            name: "fast",
+            about: "A first look, in about half the time",
+            text: include_str!("presets/fast.toml"),
+        },
+        Self {
+            name: "default",
+            about: "What a run without a preset does",
+            text: include_str!("presets/default.toml"),
+        },
+        Self {
+            name: "thorough",
+            about: "A second search about the best poses, in about twice the time",
+            text: include_str!("presets/thorough.toml"),
+        },
+        Self {
+            name: "shape",
+            about: "How surfaces fit, and nothing else",
+            text: include_str!("presets/shape.toml"),
+        },
+    ];
+
+    /// The preset with a name.
+    pub fn named(name: &str) -> Option<Self> {
+        Self::ALL.into_iter().find(|preset| preset.name == name)
     }
 
-    /// The options that it gives.
+    /// Sets the options of the preset; returns them.
     ///
     /// # Errors
-    /// [`ConfigError`] if its file cannot be read, which a test rules out.
-    pub fn entries(self) -> Result<Vec<Entry>, ConfigError> {
-        read_text::<DockOptions>(self.text(), Path::new("preset"))
+    /// [`Error`] if its file cannot be read, which a test rules out.
+    pub fn apply(self, options: &mut DockOptions) -> Result<Vec<GivenOption>, Error> {
+        options.read_toml(self.text, Path::new("preset"))
     }
 }
 
@@ -46,7 +63,6 @@ impl Preset {
 mod tests {
     use super::*;
     use crate::dock::scene::Scene;
-    use crate::options::text;
     use knotdock_scoring::terms::effect::Effect;
     use knotdock_scoring::terms::pose::POSE_TERMS;
     use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
@@ -55,11 +71,11 @@ mod tests {
     /// registry must be off too.
     #[test]
     fn shape_leaves_no_other_term_on() {
-        let words = Preset::Shape.entries().unwrap().into_iter();
-        let words = words.flat_map(|entry| entry.words);
-        let options: DockOptions = text::read(words.map(Into::into)).unwrap();
+        let mut options = DockOptions::default();
+        let shape = Preset::named("shape").unwrap();
+        shape.apply(&mut options).unwrap();
         for term in POSE_TERMS {
-            assert_eq!(options.terms.weights.get(term.id), 0.0, "{}", term.id);
+            assert_eq!(options.terms.weight(term.id), Some(0.0), "{}", term.id);
         }
         let [receptor, ligand] = ["receptor", "ligand"].map(|side| {
             let root = env!("CARGO_MANIFEST_DIR");
@@ -80,10 +96,10 @@ mod tests {
 
     #[test]
     fn presets_can_be_read_and_say_what_they_are_for() {
-        for preset in Preset::value_variants() {
-            let entries = preset.entries().unwrap();
-            assert_eq!(entries.is_empty(), *preset == Preset::Default);
-            assert!(preset.text().starts_with("# "));
+        for preset in Preset::ALL {
+            let given = preset.apply(&mut DockOptions::default()).unwrap();
+            assert_eq!(given.is_empty(), preset.name == "default");
+            assert!(preset.text.starts_with("# "));
         }
     }
 }

@@ -2,102 +2,86 @@
 
 use std::path::Path;
 
-use clap::{Args, ValueEnum, ValueHint};
+use knotdock_structures::Error;
 use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
-use super::values::number;
+use super::definition::{Choice, Content, Form, Optional, Parsed, Rule, Signed, Word, options};
+use super::values::Range;
 use crate::options::membrane::MembraneChoice;
+use crate::plain_path::plain_path;
 use crate::predictions::PredictionSource;
-use crate::restraints::{Crosslink, Needed, RestraintFile, RestraintFileError, TblBounds};
+use crate::restraints::{Crosslink, Needed, RestraintFile, TblBounds};
 
 /// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/research/effects.md,
 /// "Active sites").
 pub(crate) const PEPTIDASE_WEIGHT: f64 = 500.0;
 
-/// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
-#[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[command(next_help_heading = "Restraints (molecules)")]
-#[serde(deny_unknown_fields)]
-pub struct RestraintOptions {
-    /// What may touch of an antibody: cdrs or whole.
-    ///
-    /// Antibodies are detected from their sequence. cdrs: the complementarity-determining regions and what lies within
-    /// 5 Å of them. whole: all of it.
-    #[arg(long, value_enum, value_name = "cdrs|whole", hide_possible_values = true, default_value_t = AntibodySurface::Cdrs)]
-    pub antibody: AntibodySurface,
-    /// Residues of the receptor that are not in contact, such as H:1-50,52A,L.
-    ///
-    /// H:1-50 is a range with all that is inserted in it, 52A an inserted residue, L a chain. A chain without a name
-    /// is _. After a residue its chain's name may be left out, unless another chain has the residue's name.
-    #[arg(long, value_name = "RESIDUES")]
-    pub block_receptor: Option<ResidueSelection>,
-    /// Residues of the ligand that are not in contact.
-    ///
-    /// Written as those of --block-receptor.
-    #[arg(long, value_name = "RESIDUES")]
-    pub block_ligand: Option<ResidueSelection>,
-    /// Residues of the receptor that are thought to be in contact, such as A:57,189-195.
-    ///
-    /// Poses that touch them rank higher, by terms.active_weight. In the search each contact of theirs earns a
-    /// 250th of that, divided by their number.
-    #[arg(long, value_name = "RESIDUES")]
-    pub active_receptor: Option<ResidueSelection>,
-    /// Residues of the ligand that are thought to be in contact.
-    ///
-    /// Written as those of --active-receptor.
-    #[arg(long, value_name = "RESIDUES")]
-    pub active_ligand: Option<ResidueSelection>,
-    /// Distances that are known between receptor and ligand: a table, or a .tbl of HADDOCK and CNS.
-    ///
-    /// The columns of the table are receptor, ligand, lower, target, upper and group. Residues are written as A:57,
-    /// atoms as A:57.CA. Poses that cannot satisfy the distances are not searched.
-    #[arg(long, value_name = "FILE", value_parser = restraint_file, value_hint = ValueHint::FilePath)]
-    pub restraints: Option<RestraintFile>,
-    /// How many of the restraints a pose has to satisfy: a number, or a share such as 60%.
-    ///
-    /// Ask for fewer than all if some may be false.
-    #[arg(long, value_name = "COUNT|SHARE", default_value_t = Needed::default())]
-    pub restraints_need: Needed,
-    /// Upper bounds of a .tbl: widened for the hydrogens that they count, or as written.
-    ///
-    /// HADDOCK sums over hydrogens, which are dropped here. widened: 2 Å is 2.78 Å between heavy atoms. Selections
-    /// without hydrogens, such as name CA, keep their bounds.
-    #[arg(long, value_enum, value_name = "widened|written", hide_possible_values = true, default_value_t = TblBounds::Widened)]
-    pub tbl_bounds: TblBounds,
-    /// Reagent of cross-links: DSS or BS3.
-    ///
-    /// Rows of --restraints without an upper bound get that of the reagent, between CA atoms. DSS and BS3: 30 Å.
-    #[arg(long, value_name = "REAGENT")]
-    pub crosslink: Option<Crosslink>,
-    /// How likely each residue of the receptor is in the interface: a table, or bfactor.
-    ///
-    /// The columns of the table are chain, residue and probability, as a predictor gives them. bfactor reads the B
-    /// values of the receptor's file. Poses that touch the likely residues rank higher, by
-    /// terms.interface_weight.
-    #[arg(long, value_name = "FILE|bfactor", value_parser = PredictionSource::read, value_hint = ValueHint::FilePath)]
-    pub interface_receptor: Option<PredictionSource>,
-    /// The same of the ligand.
-    #[arg(long, value_name = "FILE|bfactor", value_parser = PredictionSource::read, value_hint = ValueHint::FilePath)]
-    pub interface_ligand: Option<PredictionSource>,
-    /// A membrane that no atom of the other molecule enters: receptor, ligand or two heights z.
-    ///
-    /// receptor or ligand: that file marks the planes as OPM and PPM do. LOW,HIGH: the lowest and highest z in Å of the
-    /// receptor's file (--membrane=-15,15). Poses in it are not searched. What lies between the samples costs
-    /// terms.membrane_weight.
-    #[arg(
-        long,
-        value_name = "receptor|ligand|LOW,HIGH",
-        allow_hyphen_values = true
-    )]
-    pub membrane: Option<MembraneChoice>,
-    /// Score of a pose that touches the active site of a peptidase; 0 turns it off.
-    ///
-    /// A pose that touches some of the catalytic residues gets that share of it. Peptidases are detected from their
-    /// sequence. This counts if the contact effect is on, no residue is active, and the other molecule is neither
-    /// peptidase nor antibody.
-    #[arg(long, value_name = "NUMBER", value_parser = number(0.0..=1e6), default_value_t = PEPTIDASE_WEIGHT)]
-    pub peptidase_weight: f64,
+options! {
+    /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
+    RestraintOptions as restraints, "Restraints", Molecules {
+        /// What may touch of an antibody: cdrs or whole.
+        ///
+        /// Antibodies are detected from their sequence. cdrs: the complementarity-determining regions and what lies within
+        /// 5 Å of them. whole: all of it.
+        antibody: AntibodySurface = AntibodySurface::Cdrs, "cdrs|whole", Choice;
+        /// Residues of the receptor that are not in contact, such as H:1-50,52A,L.
+        ///
+        /// H:1-50 is a range with all that is inserted in it, 52A an inserted residue, L a chain. A chain without a name
+        /// is _. After a residue its chain's name may be left out, unless another chain has the residue's name.
+        block_receptor: Option<ResidueSelection> = None, "RESIDUES", Optional(Word);
+        /// Residues of the ligand that are not in contact.
+        ///
+        /// Written as those of --block-receptor.
+        block_ligand: Option<ResidueSelection> = None, "RESIDUES", Optional(Word);
+        /// Residues of the receptor that are thought to be in contact, such as A:57,189-195.
+        ///
+        /// Poses that touch them rank higher, by terms.active_weight. In the search each contact of theirs earns a
+        /// 250th of that, divided by their number.
+        active_receptor: Option<ResidueSelection> = None, "RESIDUES", Optional(Word);
+        /// Residues of the ligand that are thought to be in contact.
+        ///
+        /// Written as those of --active-receptor.
+        active_ligand: Option<ResidueSelection> = None, "RESIDUES", Optional(Word);
+        /// Distances that are known between receptor and ligand: a table, or a .tbl of HADDOCK and CNS.
+        ///
+        /// The columns of the table are receptor, ligand, lower, target, upper and group. Residues are written as A:57,
+        /// atoms as A:57.CA. Poses that cannot satisfy the distances are not searched.
+        restraints: Option<RestraintFile> = None, "FILE", Optional(Content(restraint_file));
+        /// How many of the restraints a pose has to satisfy: a number, or a share such as 60%.
+        ///
+        /// Ask for fewer than all if some may be false.
+        restraints_need: Needed = Needed::default(), "COUNT|SHARE", Parsed;
+        /// Upper bounds of a .tbl: widened for the hydrogens that they count, or as written.
+        ///
+        /// HADDOCK sums over hydrogens, which are dropped here. widened: 2 Å is 2.78 Å between heavy atoms. Selections
+        /// without hydrogens, such as name CA, keep their bounds.
+        tbl_bounds: TblBounds = TblBounds::Widened, "widened|written", Choice;
+        /// Reagent of cross-links: DSS or BS3.
+        ///
+        /// Rows of --restraints without an upper bound get that of the reagent, between CA atoms. DSS and BS3: 30 Å.
+        crosslink: Option<Crosslink> = None, "REAGENT", Optional(Parsed);
+        /// How likely each residue of the receptor is in the interface: a table, or bfactor.
+        ///
+        /// The columns of the table are chain, residue and probability, as a predictor gives them. bfactor reads the B
+        /// values of the receptor's file. Poses that touch the likely residues rank higher, by
+        /// terms.interface_weight.
+        interface_receptor: Option<PredictionSource> = None, "FILE|bfactor", Optional(Predictions);
+        /// The same of the ligand.
+        interface_ligand: Option<PredictionSource> = None, "FILE|bfactor", Optional(Predictions);
+        /// A membrane that no atom of the other molecule enters: receptor, ligand or two heights z.
+        ///
+        /// receptor or ligand: that file marks the planes as OPM and PPM do. LOW,HIGH: the lowest and highest z in Å of the
+        /// receptor's file (--membrane=-15,15). Poses in it are not searched. What lies between the samples costs
+        /// terms.membrane_weight.
+        membrane: Option<MembraneChoice> = None, "receptor|ligand|LOW,HIGH", Optional(Signed);
+        /// Score of a pose that touches the active site of a peptidase; 0 turns it off.
+        ///
+        /// A pose that touches some of the catalytic residues gets that share of it. Peptidases are detected from their
+        /// sequence. This counts if the contact effect is on, no residue is active, and the other molecule is neither
+        /// peptidase nor antibody.
+        peptidase_weight: f64 = PEPTIDASE_WEIGHT, "NUMBER", Range::between(0.0, 1e6), in files;
+    }
 }
 
 impl RestraintOptions {
@@ -114,12 +98,30 @@ impl RestraintOptions {
 }
 
 /// The restraints of a file.
-fn restraint_file(path: &str) -> Result<RestraintFile, RestraintFileError> {
-    RestraintFile::read(Path::new(path))
+fn restraint_file(path: &Path) -> Result<RestraintFile, Error> {
+    Ok(RestraintFile::read(path)?)
+}
+
+/// Predictions of an interface: a table, or the B values of the molecule's file.
+struct Predictions;
+
+impl Rule<PredictionSource> for Predictions {
+    fn read(&self, text: &str, folder: &Path) -> Result<PredictionSource, Error> {
+        let path = plain_path(&folder.join(text));
+        Ok(PredictionSource::read(&path.to_string_lossy())?)
+    }
+
+    fn text(&self, source: &PredictionSource) -> Option<String> {
+        Some(source.to_string())
+    }
+
+    fn form(&self) -> Form {
+        Form::File
+    }
 }
 
 /// What part of an antibody may touch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AntibodySurface {
     /// Its CDRs and what lies about them.

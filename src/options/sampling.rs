@@ -3,35 +3,27 @@
 use std::fmt;
 use std::str::FromStr;
 
-use clap::Args;
 use serde::{Deserialize, Serialize};
 
 use crate::mesh::SampleWeights;
 use crate::mesh::samplers::SamplerName;
 
-/// How meshes are sampled. Molecules are balls as they come.
-#[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[command(next_help_heading = "Sampling (meshes)")]
-#[serde(deny_unknown_fields)]
-pub struct SamplingOptions {
-    /// Nodes of the grid on which each mesh is sampled, as 2^18 or 262144 [default: 2^18].
-    #[arg(long, value_name = "COUNT")]
-    pub sample_grid: Option<SampleGrid>,
-    /// Weights of the balls of meshes: fitted or unit [default: fitted].
-    ///
-    /// fitted: the summed bumps come closest to one inside and to zero outside. unit: one each.
-    #[arg(
-        long,
-        value_enum,
-        value_name = "fitted|unit",
-        hide_possible_values = true
-    )]
-    pub sample_weights: Option<SampleWeights>,
-    /// How a mesh becomes balls: lattice or bi [default: lattice].
-    ///
-    /// lattice: balls of one radius. bi: the balls of Behandish and Ilieş' Algorithm 1, which count by volume.
-    #[arg(long, value_name = "lattice|bi")]
-    pub sampler: Option<SamplerName>,
+use super::definition::{Choice, Optional, Parsed, options};
+
+options! {
+    /// How meshes are sampled. Molecules are balls as they come.
+    SamplingOptions as sampling, "Sampling", Meshes {
+        /// Nodes of the grid on which each mesh is sampled, as 2^18 or 262144 [default: 2^18].
+        sample_grid: Option<SampleGrid> = None, "COUNT", Optional(Parsed);
+        /// Weights of the balls of meshes: fitted or unit [default: fitted].
+        ///
+        /// fitted: the summed bumps come closest to one inside and to zero outside. unit: one each.
+        sample_weights: Option<SampleWeights> = None, "fitted|unit", Optional(Choice);
+        /// How a mesh becomes balls: lattice or bi [default: lattice].
+        ///
+        /// lattice: balls of one radius. bi: the balls of Behandish and Ilieş' Algorithm 1, which count by volume.
+        sampler: Option<SamplerName> = None, "lattice|bi", Optional(Parsed);
+    }
 }
 
 /// Maximum number of nodes an axis of a grid: beyond it the depths alone take a gibibyte.

@@ -1,64 +1,54 @@
 //! Options on the search: its density, and the hardware that it runs on.
 
-use clap::{Args, ValueEnum};
 use knotdock_scoring::symmetry::Symmetry;
 use serde::{Deserialize, Serialize};
 
-use super::values::{count, rotations, share};
+use super::definition::{Choice, Optional, Parsed, options};
+use super::values::{NOT_NEGATIVE, Range, Rotations, SHARE};
 
-/// How densely is searched, and on what.
-#[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[command(next_help_heading = "Search")]
-#[serde(deny_unknown_fields)]
-pub struct SearchOptions {
-    /// Rotations of the ligand, spread evenly over all: their number, or the angle between them, such as 15deg.
-    ///
-    /// An angle stands for a number, 3600 (15/D)^3, so that 6deg gives 56,250. With --symmetry the option counts axes,
-    /// by default 900 over half a sphere or 90 across a ring's own.
-    #[arg(long, value_name = "COUNT|ANGLE", value_parser = rotations(1..=MAX_ROTATIONS), default_value_t = 3600)]
-    pub rotations: usize,
-    /// Search again, among this many rotations, about the best: a number or an angle.
-    ///
-    /// Their peaks take the place of the best rotations' own.
-    #[arg(long, value_name = "COUNT|ANGLE", value_parser = rotations(1..=MAX_ROTATIONS))]
-    pub fine_rotations: Option<usize>,
-    /// Share of the finer rotations that are searched.
-    #[arg(long, value_name = "SHARE", value_parser = share, default_value_t = 0.05)]
-    pub fine_share: f64,
-    /// Floating-point type of the search: single or double.
-    ///
-    /// single allows tolerances down to 1e-4, double down to 1e-6. What is reported is in double precision either way.
-    #[arg(long, value_enum, value_name = "single|double", hide_possible_values = true, default_value_t = Precision::Single)]
-    pub precision: Precision,
-    /// What computes the correlations: cpu, or gpu, a graphics processor.
-    ///
-    /// A graphics processor works through Vulkan, Metal or Direct3D 12, in single precision. If there are several, the
-    /// environment variable WGPU_ADAPTER_NAME names one.
-    #[arg(long, value_enum, value_name = "cpu|gpu", hide_possible_values = true, default_value_t = EngineChoice::Cpu)]
-    pub engine: EngineChoice,
-    /// Peaks kept of each rotation.
-    #[arg(long, value_name = "COUNT", value_parser = count(1..=10_000), default_value_t = 3)]
-    pub per_rotation: usize,
-    /// Poses kept of all rotations.
-    #[arg(long, value_name = "COUNT", value_parser = count(1..=10_000_000), default_value_t = 2000)]
-    pub poses: usize,
-    /// Best poses to refine off the grid [default: 600 with shape alone, else none].
-    ///
-    /// Beside other effects tighter fits make no better a ranking.
-    #[arg(long, value_name = "COUNT")]
-    pub refine: Option<usize>,
-    /// Dock copies of RECEPTOR into a ring: C2, C3 ..., or two rings: D2, D3 ...
-    ///
-    /// LIGAND is left out. C2, C3 and so on put 2, 3 and more copies about an axis. If RECEPTOR is itself a ring of 2,
-    /// 3 or more copies, D2, D3 and so on dock two such rings face to face. The option --rotations then counts axes,
-    /// and each pose is where the second copy or ring goes. Residues that --block-receptor and --active-receptor name
-    /// are those of every copy, or of both rings.
-    #[arg(long, value_name = "Cn|Dn")]
-    pub symmetry: Option<Symmetry>,
+options! {
+    /// How densely is searched, and on what.
+    SearchOptions as search, "Search", Both {
+        /// Rotations of the ligand, spread evenly over all: their number, or the angle between them, such as 15deg.
+        ///
+        /// An angle stands for a number, 3600 (15/D)^3, so that 6deg gives 56,250. With --symmetry the option counts axes,
+        /// by default 900 over half a sphere or 90 across a ring's own.
+        rotations: usize = 3600, "COUNT|ANGLE", Rotations(ROTATIONS);
+        /// Search again, among this many rotations, about the best: a number or an angle.
+        ///
+        /// Their peaks take the place of the best rotations' own.
+        fine_rotations: Option<usize> = None, "COUNT|ANGLE", Optional(Rotations(ROTATIONS));
+        /// Share of the finer rotations that are searched.
+        fine_share: f64 = 0.05, "SHARE", SHARE;
+        /// Floating-point type of the search: single or double.
+        ///
+        /// single allows tolerances down to 1e-4, double down to 1e-6. What is reported is in double precision either way.
+        precision: Precision = Precision::Single, "single|double", Choice;
+        /// What computes the correlations: cpu, or gpu, a graphics processor.
+        ///
+        /// A graphics processor works through Vulkan, Metal or Direct3D 12, in single precision. If there are several, the
+        /// environment variable WGPU_ADAPTER_NAME names one.
+        engine: EngineChoice = EngineChoice::Cpu, "cpu|gpu", Choice;
+        /// Peaks kept of each rotation.
+        per_rotation: usize = 3, "COUNT", Range::between(1.0, 1e4);
+        /// Poses kept of all rotations.
+        poses: usize = 2000, "COUNT", Range::between(1.0, 1e7);
+        /// Best poses to refine off the grid [default: 600 with shape alone, else none].
+        ///
+        /// Beside other effects tighter fits make no better a ranking.
+        refine: Option<usize> = None, "COUNT", Optional(NOT_NEGATIVE);
+        /// Dock copies of RECEPTOR into a ring: C2, C3 ..., or two rings: D2, D3 ...
+        ///
+        /// LIGAND is left out. C2, C3 and so on put 2, 3 and more copies about an axis. If RECEPTOR is itself a ring of 2,
+        /// 3 or more copies, D2, D3 and so on dock two such rings face to face. The option --rotations then counts axes,
+        /// and each pose is where the second copy or ring goes. Residues that --block-receptor and --active-receptor name
+        /// are those of every copy, or of both rings.
+        symmetry: Option<Symmetry> = None, "Cn|Dn", Optional(Parsed);
+    }
 }
 
-/// Maximum number of rotations of a set.
-const MAX_ROTATIONS: usize = 10_000_000;
+/// Numbers of rotations of a set.
+const ROTATIONS: Range = Range::between(1.0, 1e7);
 
 /// Poses refined by default when shape is all there is: as many as it takes for ranks to depend little on the
 /// ligand's random start orientation (docs/research/defaults.md). Beside other effects refining cost ranks.
@@ -72,7 +62,7 @@ pub const AXES_ACROSS: usize = 90;
 
 /// Floating-point type of the fast path: spectra, grids and the search. What is reported is in double precision
 /// whatever it is.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
     /// 32 bits: tolerances down to 1e-4.
@@ -93,7 +83,7 @@ impl Precision {
 }
 
 /// What the correlations are computed on. All else, exact sums and refinement among it, is computed on the CPU.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EngineChoice {
     /// The CPU's cores.

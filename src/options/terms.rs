@@ -1,42 +1,141 @@
 //! Weights and tables of the terms of the score.
 
-use clap::{Args, ValueHint};
-use knotdock_scoring::terms::effect::contact::Potential;
+use std::path::Path;
+
+use knotdock_scoring::terms::effect::contact::{Potential, PotentialError};
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
-use serde::{Deserialize, Serialize};
+use knotdock_structures::Error;
 
-use super::potential_file;
-use super::term_weights::TermWeights;
-use super::values::number;
+use super::definition::{Content, Optional, options};
+use super::values::Range;
+use crate::bounded_read::{MAX_TABLE, read_bounded_text};
 
-/// Weights and tables of the terms of the score. The defaults of the weights were chosen on training pairs.
-#[derive(Args, Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[command(next_help_heading = "Terms (molecules)")]
-#[serde(deny_unknown_fields)]
-pub struct TermOptions {
-    /// Weight in shape of atoms that no water reaches, against 1 for the others.
-    #[arg(long, value_name = "NUMBER", value_parser = number(0.0..=1e3), default_value_t = 1.0)]
-    pub core_weight: f64,
-    /// Weights of effects and pose terms.
-    #[command(flatten)]
-    #[serde(flatten)]
-    pub weights: TermWeights,
-    /// Contact potential in place of the program's own.
-    ///
-    /// A table as scripts/potentials/contact_potential.py writes it.
-    #[arg(long, value_name = "FILE", value_parser = potential_file::contact, value_hint = ValueHint::FilePath)]
-    pub contact_potential: Option<Potential>,
-    /// Fine contact potential in place of the program's own.
-    ///
-    /// A table as scripts/potentials/contact_potential.py --fine writes it.
-    #[arg(long, value_name = "FILE", value_parser = potential_file::fine_contact, value_hint = ValueHint::FilePath)]
-    pub fine_contact_potential: Option<DistanceBinnedPotential>,
-    /// Atom pair potential in place of the program's own.
-    ///
-    /// A table as scripts/potentials/atom_pair_potential.py writes it.
-    #[arg(long, value_name = "FILE", value_parser = potential_file::atom_pair, value_hint = ValueHint::FilePath)]
-    pub atom_pair_potential: Option<AtomPairPotential>,
-    /// pH at which charges are assigned.
-    #[arg(long, value_name = "PH", value_parser = number(0.0..=14.0), default_value_t = 7.0)]
-    pub ph: f64,
+/// Weights of a term.
+const WEIGHT: Range = Range::between(0.0, 1e6);
+
+options! {
+    /// Weights and tables of the terms of the score. The defaults of the weights were chosen on training pairs.
+    TermOptions as terms, "Terms", Molecules {
+        /// Weight in shape of atoms that no water reaches, against 1 for the others.
+        core_weight: f64 = 1.0, "NUMBER", Range::between(0.0, 1e3), in files;
+        /// Weight of the electrostatic energy: score per kcal/mol.
+        electrostatics_weight: f64 = 24.0, "NUMBER", WEIGHT, in files;
+        /// Weight of the contact potential: score per RT.
+        contact_weight: f64 = 2.0, "NUMBER", WEIGHT, in files;
+        /// Cost of a contact of a blocked atom: score.
+        restraint_weight: f64 = 1.0, "NUMBER", WEIGHT, in files;
+        /// Weight of the fine contact potential, which scores poses where the contact effect is on: score per RT; 0
+        /// leaves the term out.
+        fine_contact_weight: f64 = 2.0, "NUMBER", WEIGHT, in files;
+        /// Weight of the atom pair potential, which scores poses where the contact effect is on: score per RT; 0
+        /// leaves the term out.
+        atom_pair_weight: f64 = 1.0, "NUMBER", WEIGHT, in files;
+        /// Weight of the atom pair potential with a penalty on overlap, after a rigid move of at most 2 Å; it scores
+        /// poses where the contact effect is on: score per RT; 0 leaves the term out.
+        relaxed_weight: f64 = 3.0, "NUMBER", WEIGHT, in files;
+        /// Score of a pose in which all active residues are in contact; other poses get their share of it: score; 0
+        /// leaves the term out.
+        active_weight: f64 = 2000.0, "NUMBER", WEIGHT, in files;
+        /// Cost of an atom where unresolved residues of the other side are, in gaps of a chain or past its termini,
+        /// times the share of their conformers there: score; 0 leaves the term out.
+        unresolved_weight: f64 = 3.0, "NUMBER", WEIGHT, in files;
+        /// Cost of an atom near a terminus of its chain, or near a gap in it, that is in contact with the other
+        /// side: score; 0 leaves the term out.
+        termini_weight: f64 = 2.0, "NUMBER", WEIGHT, in files;
+        /// Cost of each Å by which a pose violates the distance restraints: score per Å; 0 leaves the term out.
+        violation_weight: f64 = 400.0, "NUMBER", WEIGHT, in files;
+        /// Score of a residue in contact for each nat by which its log-odds to be in the interface exceed those of
+        /// the mean: score per nat; 0 leaves the term out.
+        interface_weight: f64 = 5.0, "NUMBER", WEIGHT, in files;
+        /// Cost of each Å by which a pose lies in the membrane: score per Å; 0 leaves the term out.
+        membrane_weight: f64 = 50.0, "NUMBER", WEIGHT, in files;
+        /// Contact potential in place of the program's own.
+        ///
+        /// A table as scripts/potentials/contact_potential.py writes it.
+        contact_potential: Option<Potential> = None, "FILE", Optional(Content(contact)), in files;
+        /// Fine contact potential in place of the program's own.
+        ///
+        /// A table as scripts/potentials/contact_potential.py --fine writes it.
+        fine_contact_potential: Option<DistanceBinnedPotential> = None, "FILE", Optional(Content(fine_contact)), in files;
+        /// Atom pair potential in place of the program's own.
+        ///
+        /// A table as scripts/potentials/atom_pair_potential.py writes it.
+        atom_pair_potential: Option<AtomPairPotential> = None, "FILE", Optional(Content(atom_pair)), in files;
+        /// pH at which charges are assigned.
+        ph: f64 = 7.0, "PH", Range::between(0.0, 14.0);
+    }
+}
+
+impl TermOptions {
+    /// The weight of the term with an id of the registries; shape has none.
+    pub fn weight(&self, id: &str) -> Option<f64> {
+        Some(match id {
+            "electrostatics" => self.electrostatics_weight,
+            "contact" => self.contact_weight,
+            "restraint" => self.restraint_weight,
+            "fine_contact" => self.fine_contact_weight,
+            "atom_pair" => self.atom_pair_weight,
+            "relaxed" => self.relaxed_weight,
+            "active_residues" => self.active_weight,
+            "unresolved" => self.unresolved_weight,
+            "termini" => self.termini_weight,
+            "restraints_penalty" => self.violation_weight,
+            "interface_predictions" => self.interface_weight,
+            "membrane" => self.membrane_weight,
+            _ => return None,
+        })
+    }
+}
+
+/// The contact potential of a file.
+fn contact(path: &Path) -> Result<Potential, Error> {
+    table(path, "contact_potential.py", Potential::parse)
+}
+
+/// The fine contact potential of a file.
+fn fine_contact(path: &Path) -> Result<DistanceBinnedPotential, Error> {
+    let script = "contact_potential.py --fine";
+    table(path, script, DistanceBinnedPotential::parse)
+}
+
+/// The atom pair potential of a file.
+fn atom_pair(path: &Path) -> Result<AtomPairPotential, Error> {
+    table(path, "atom_pair_potential.py", AtomPairPotential::parse)
+}
+
+/// The table in a file; `script` writes such tables.
+fn table<P>(
+    path: &Path,
+    script: &str,
+    parse: fn(&str) -> Result<P, PotentialError>,
+) -> Result<P, Error> {
+    let refused = |error: Error| {
+        let remedy = format!("give a table as scripts/{script} writes it, or leave the option out");
+        error.at(path).help(remedy)
+    };
+    let text = read_bounded_text(path, MAX_TABLE).map_err(|error| {
+        let message = format!("the table of energies cannot be read: {error}");
+        refused(Error::input(message))
+    })?;
+    parse(&text).map_err(|error| refused(Error::input(&error).on_line(error.line as u64)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use knotdock_scoring::terms::weights;
+
+    /// Each term of the registries has its weight among the options, by the name and with the default that the registry
+    /// states.
+    #[test]
+    fn weights_are_those_of_the_registries() {
+        let (options, record) = (TermOptions::default(), TermOptions::default());
+        let record = serde_json::to_value(record).unwrap();
+        for (id, weight) in weights() {
+            assert_eq!(options.weight(id), Some(weight.default), "{id}");
+            let name = weight.option.replace('-', "_");
+            assert_eq!(record[&name], weight.default, "{name}");
+        }
+        assert_eq!(options.weight("shape"), None);
+    }
 }

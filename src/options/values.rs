@@ -1,39 +1,179 @@
-//! Values of options, checked as they are read.
+//! Values of options: numbers in a range, counts, angles, times and sizes.
 
-use std::ops::RangeInclusive;
+use std::fmt;
+use std::path::Path;
+use std::str::FromStr;
 
-use knotdock_structures::LARGEST_LENGTH;
+use knotdock_structures::{Error, LARGEST_LENGTH};
 
-/// How ranges are stated.
-pub(super) const BOUND: &str = "it must be ";
+use super::definition::Rule;
 
-/// The field's count of rotations at an angle of 15 degrees.
-const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
+/// Numbers that an option may have.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Range {
+    low: f64,
+    high: f64,
+    /// Whether `low` itself is out of range.
+    is_open: bool,
+}
 
-/// Numbers of rotations in a range, each written as a number or as an angle, such as 15deg.
-pub fn rotations(
-    range: RangeInclusive<usize>,
-) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
-    move |text| match text.strip_suffix("deg") {
-        Some(angle) => match rotations_of_text(angle)? {
-            rotations if range.contains(&rotations) => Ok(rotations),
-            rotations => Err(format!(
-                "it must be an angle of at least {:.2} degrees, for {angle} degrees stand for {rotations} rotations and at \
-                 most {} are searched",
-                angle_of_rotations(*range.end()),
-                range.end()
-            )),
-        },
-        None => count(range.clone())(text)
-            .map_err(|error| format!("{error}, or an angle such as 15deg")),
+/// Finite numbers above zero.
+pub const ABOVE_ZERO: Range = Range::above(0.0, f64::MAX);
+/// Finite numbers, zero or above.
+pub const NOT_NEGATIVE: Range = Range::between(0.0, f64::MAX);
+/// Shares: above zero and at most one.
+pub const SHARE: Range = Range::above(0.0, 1.0);
+/// Lengths of either sign.
+pub const LENGTH: Range = Range::between(-LARGEST_LENGTH, LARGEST_LENGTH);
+/// Lengths, zero or above.
+pub const DISTANCE: Range = Range::between(0.0, LARGEST_LENGTH);
+/// Counts of one or more.
+pub const AT_LEAST_ONE: Range = Range::between(1.0, f64::MAX);
+
+impl Range {
+    /// Numbers from `low` to `high`.
+    pub const fn between(low: f64, high: f64) -> Self {
+        Self {
+            low,
+            high,
+            is_open: false,
+        }
+    }
+
+    /// Numbers above `low` and up to `high`.
+    pub const fn above(low: f64, high: f64) -> Self {
+        Self {
+            is_open: true,
+            ..Self::between(low, high)
+        }
+    }
+
+    fn contains(self, value: f64) -> bool {
+        let is_above = if self.is_open {
+            value > self.low
+        } else {
+            value >= self.low
+        };
+        is_above && value <= self.high
     }
 }
 
-/// As [`rotations_of_angle`], of an angle as it is typed.
-fn rotations_of_text(text: &str) -> Result<usize, String> {
-    rotations_of_angle(above_zero(text)?)
-        .ok_or_else(|| "the angle must lie between 0.1 and 180 degrees".to_owned())
+impl fmt::Display for Range {
+    fn fmt(&self, to: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self { low, high, is_open } = self;
+        let number = |value: f64| match value.abs() {
+            0.0 => "0".to_owned(),
+            1e-3..1e9 => value.to_string(),
+            _ => format!("{value:e}"),
+        };
+        let (low, is_bounded, high) = (number(*low), *high < f64::MAX, number(*high));
+        match (is_open, is_bounded) {
+            (true, true) => write!(to, "above {low} and at most {high}"),
+            (true, false) => write!(to, "above {low}"),
+            (false, true) => write!(to, "between {low} and {high}"),
+            (false, false) => write!(to, "of {low} or more"),
+        }
+    }
 }
+
+/// Types of numbers that options have.
+pub trait Number: FromStr + fmt::Display + Copy {
+    /// The kind of number.
+    const KIND: &'static str;
+
+    /// The number as a float, to be compared with a range.
+    fn float(self) -> f64;
+
+    /// The number without the sign of a zero.
+    fn plain(self) -> Self {
+        self
+    }
+}
+
+impl Number for f64 {
+    const KIND: &'static str = "a finite number";
+
+    fn float(self) -> f64 {
+        self
+    }
+
+    // A negative zero would be written as one.
+    fn plain(self) -> Self {
+        self + 0.0
+    }
+}
+
+impl Number for usize {
+    const KIND: &'static str = "a whole number";
+
+    fn float(self) -> f64 {
+        self as f64
+    }
+}
+
+impl<N: Number> Rule<N> for Range {
+    fn read(&self, text: &str, _: &Path) -> Result<N, Error> {
+        let value: Option<N> = text.parse().ok();
+        let value = value.filter(|value| self.contains(value.float()));
+        value
+            .map(N::plain)
+            .ok_or_else(|| Error::input(format!("it must be {} {self}", N::KIND)))
+    }
+
+    fn check(&self, value: &N) -> Result<(), Error> {
+        match self.contains(value.float()) {
+            true => Ok(()),
+            false => Err(Error::input(format!("it must be {} {self}", N::KIND))),
+        }
+    }
+
+    fn text(&self, value: &N) -> Option<String> {
+        Some(value.to_string())
+    }
+}
+
+/// The parser of numbers in a range, for arguments of command lines.
+pub fn in_range<N: Number>(
+    range: Range,
+) -> impl Fn(&str) -> Result<N, Error> + Clone + Send + Sync + 'static {
+    move |text| range.read(text, Path::new(""))
+}
+
+/// Numbers of rotations, each written as a number or as an angle, such as 15deg.
+pub(super) struct Rotations(pub(super) Range);
+
+impl Rule<usize> for Rotations {
+    fn read(&self, text: &str, folder: &Path) -> Result<usize, Error> {
+        let Some(angle) = text.strip_suffix("deg") else {
+            let count = self.0.read(text, folder);
+            return count.map_err(|error: Error| {
+                Error::input(format!("{error}, or an angle such as 15deg"))
+            });
+        };
+        let degrees: f64 = ABOVE_ZERO.read(angle, folder)?;
+        let rotations = rotations_of_angle(degrees)
+            .ok_or_else(|| Error::input("the angle must lie between 0.1 and 180 degrees"))?;
+        self.check(&rotations).map(|()| rotations).map_err(|_| {
+            let most = self.0.high as usize;
+            Error::input(format!(
+                "it must be an angle of at least {:.2} degrees, for {angle} degrees stand for {rotations} rotations \
+                 and at most {most} are searched",
+                angle_of_rotations(most),
+            ))
+        })
+    }
+
+    fn check(&self, rotations: &usize) -> Result<(), Error> {
+        self.0.check(rotations)
+    }
+
+    fn text(&self, rotations: &usize) -> Option<String> {
+        Some(rotations.to_string())
+    }
+}
+
+/// The field's count of rotations at an angle of 15 degrees.
+const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
 
 /// The number of rotations that the field takes for an angle in degrees: N = round(3600 (15/D)^3). `None` unless the
 /// angle is at least 0.1 (12 thousand million rotations) and at most 180.
@@ -49,49 +189,62 @@ pub fn angle_of_rotations(rotations: usize) -> f64 {
     (100.0 * angle).ceil() / 100.0
 }
 
-/// Numbers in a range.
-pub fn number(
-    range: RangeInclusive<f64>,
-) -> impl Fn(&str) -> Result<f64, String> + Clone + Send + Sync + 'static {
-    move |text| match text.parse::<f64>() {
-        // A negative zero would be written as one.
-        Ok(value) if range.contains(&value) => Ok(value + 0.0),
-        _ => Err(format!(
-            "{BOUND}between {} and {}",
-            range.start(),
-            range.end()
-        )),
+/// The exponent of the bump kernel, `inf` included.
+pub(super) struct Exponent;
+
+impl Rule<f64> for Exponent {
+    fn read(&self, text: &str, _: &Path) -> Result<f64, Error> {
+        knotdock_scoring::kernel::exponent::parse(text).map_err(Error::input)
+    }
+
+    fn check(&self, alpha: &f64) -> Result<(), Error> {
+        match *alpha > 0.0 {
+            true => Ok(()),
+            false => Err(Error::input("it must be a finite number above 0, or inf")),
+        }
+    }
+
+    fn text(&self, alpha: &f64) -> Option<String> {
+        Some(alpha.to_string())
     }
 }
 
-/// Whole numbers in a range.
-pub fn count(
-    range: RangeInclusive<usize>,
-) -> impl Fn(&str) -> Result<usize, String> + Clone + Send + Sync + 'static {
-    move |text| match text.parse::<usize>() {
-        Ok(value) if range.contains(&value) => Ok(value),
-        _ => Err(format!(
-            "{BOUND}a whole number between {} and {}",
-            range.start(),
-            range.end()
-        )),
+/// A size in bytes.
+pub(super) struct Size;
+
+impl Rule<u64> for Size {
+    fn read(&self, text: &str, _: &Path) -> Result<u64, Error> {
+        size(text).map_err(Error::input)
+    }
+
+    fn text(&self, bytes: &u64) -> Option<String> {
+        Some(bytes.to_string())
     }
 }
 
-/// A share: a number above zero and at most one.
-pub fn share(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= 1.0 => Ok(value),
-        _ => Err(format!("{BOUND}above 0 and at most 1")),
+/// A number of things, or all of them (`None`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct AllOr(pub Option<usize>);
+
+/// A whole number above zero, or `all`.
+///
+/// # Errors
+/// What the text must be.
+pub fn all_or_at_least_one(text: &str) -> Result<AllOr, Error> {
+    if text == "all" {
+        return Ok(AllOr(None));
     }
+    let count = in_range(AT_LEAST_ONE)(text);
+    count
+        .map(|count| AllOr(Some(count)))
+        .map_err(|error| Error::input(format!("{error}, or `all`")))
 }
 
-/// A finite number above zero.
-pub fn above_zero(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value > 0.0 => Ok(value),
-        _ => Err("it must be a finite number above zero".to_owned()),
-    }
+/// A number and the unit after it, which begins at the first character for which `is_unit` holds.
+fn split_unit(text: &str, is_unit: impl Fn(char) -> bool) -> (&str, &str) {
+    let text = text.trim();
+    let (number, unit) = text.split_at(text.find(is_unit).unwrap_or(text.len()));
+    (number.trim(), unit.trim())
 }
 
 /// A time in seconds, from text such as `5`, `5s`, `2min` or `1h`; a bare number is seconds, and a run says so.
@@ -99,12 +252,8 @@ pub fn above_zero(text: &str) -> Result<f64, String> {
 /// # Errors
 /// What is wrong with the text.
 pub fn duration(text: &str) -> Result<f64, String> {
-    let text = text.trim();
-    let end = text
-        .find(|c: char| c.is_ascii_alphabetic() && c != 'e')
-        .unwrap_or(text.len());
-    let (number, unit) = text.split_at(end);
-    let unit = match unit.trim() {
+    let (digits, unit) = split_unit(text, |c| c.is_ascii_alphabetic() && c != 'e');
+    let unit = match unit {
         "" | "s" => 1.0,
         "us" | "µs" => 1e-6,
         "ms" => 1e-3,
@@ -116,7 +265,7 @@ pub fn duration(text: &str) -> Result<f64, String> {
             ));
         }
     };
-    above_zero(number.trim())
+    in_range::<f64>(ABOVE_ZERO)(digits)
         .map(|value| (value * unit).min(LONGEST))
         .map_err(|_| "write a number above zero and a unit, such as 5s or 2min".to_owned())
 }
@@ -124,102 +273,13 @@ pub fn duration(text: &str) -> Result<f64, String> {
 /// Seconds after which no run ends; longer times are no limits either, and clocks can add this one.
 const LONGEST: f64 = 1e9;
 
-/// A finite number, zero or above.
-pub fn not_negative(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.is_finite() && value >= 0.0 => Ok(value + 0.0),
-        _ => Err("it must be a finite number, zero or above".to_owned()),
-    }
-}
-
-/// A length of at most [`LARGEST_LENGTH`], of either sign.
-pub fn length(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value.abs() <= LARGEST_LENGTH => Ok(value + 0.0),
-        _ => Err("it must be a finite number from -1e30 to 1e30".to_owned()),
-    }
-}
-
-/// A length of at most [`LARGEST_LENGTH`], zero or above.
-pub fn distance(text: &str) -> Result<f64, String> {
-    match length(text) {
-        Ok(value) if value >= 0.0 => Ok(value),
-        _ => Err("it must be a finite number from 0 to 1e30".to_owned()),
-    }
-}
-
-/// A protrusion factor, from 0 to 1.
-pub fn protrusion(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if (0.0..=1.0).contains(&value) => Ok(value + 0.0),
-        _ => Err("it must be between 0 and 1".to_owned()),
-    }
-}
-
-/// The name of a biological assembly.
-pub fn assembly_name(text: &str) -> Result<String, String> {
-    let text = text.trim();
-    if text.is_empty() {
-        return Err("the name of an assembly is needed, such as 1".to_owned());
-    }
-    Ok(text.to_owned())
-}
-
-/// The name of a residue.
-pub fn residue_name(text: &str) -> Result<String, String> {
-    let text = text.trim();
-    if text.is_empty() {
-        return Err("the name of a residue is needed, such as HEM".to_owned());
-    }
-    Ok(text.to_owned())
-}
-
-/// A pLDDT, above 0 and up to 100.
-pub fn plddt(text: &str) -> Result<f64, String> {
-    match text.parse::<f64>() {
-        Ok(value) if value > 0.0 && value <= 100.0 => Ok(value),
-        _ => Err("it must be above 0 and up to 100".to_owned()),
-    }
-}
-
-/// A whole number above zero.
-pub fn at_least_one(text: &str) -> Result<usize, String> {
-    match text.parse::<usize>() {
-        Ok(value) if value > 0 => Ok(value),
-        _ => Err("it must be a whole number above zero".to_owned()),
-    }
-}
-
-/// A number of things, or all of them (`None`).
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct AllOr(pub Option<usize>);
-
-/// A whole number above zero, or `all`.
-///
-/// # Errors
-/// What is wrong with the text.
-pub fn all_or_at_least_one(text: &str) -> Result<AllOr, String> {
-    if text == "all" {
-        return Ok(AllOr(None));
-    }
-    match at_least_one(text) {
-        Ok(count) => Ok(AllOr(Some(count))),
-        Err(error) => Err(format!("{error}, or `all`")),
-    }
-}
-
 /// A size in bytes from text such as `800000000`, `1.5G` (1000^3) or `512MiB` (1024^2).
 ///
 /// # Errors
 /// What is wrong with the text.
 pub fn size(text: &str) -> Result<u64, String> {
-    let text = text.trim();
-    let end = text
-        .find(|c: char| !c.is_ascii_digit() && c != '.')
-        .unwrap_or(text.len());
-    let (digits, unit) = text.split_at(end);
-    let unit = unit.trim().to_ascii_lowercase();
-    let scale = match unit.as_str() {
+    let (digits, unit) = split_unit(text, |c| !c.is_ascii_digit() && c != '.');
+    let scale = match unit.to_ascii_lowercase().as_str() {
         "" | "b" => 1.0,
         "k" | "kb" => 1e3,
         "m" | "mb" => 1e6,
@@ -229,7 +289,7 @@ pub fn size(text: &str) -> Result<u64, String> {
         "mi" | "mib" => 1024.0 * 1024.0,
         "gi" | "gib" => 1024.0 * 1024.0 * 1024.0,
         "ti" | "tib" => 1024.0 * 1024.0 * 1024.0 * 1024.0,
-        _ => {
+        unit => {
             return Err(format!(
                 "`{unit}` is no unit; write bytes, K, M, G, KiB, MiB or GiB"
             ));
@@ -249,9 +309,14 @@ pub fn size(text: &str) -> Result<u64, String> {
 mod tests {
     use super::*;
 
+    fn read<T>(rule: &impl Rule<T>, text: &str) -> Result<T, String> {
+        let read = rule.read(text, Path::new(""));
+        read.map_err(|error| error.to_string())
+    }
+
     #[test]
     fn angles_give_the_counts_of_the_field() {
-        let rotations = rotations(1..=10_000_000);
+        let rotations = |text: &str| read(&Rotations(Range::between(1.0, 1e7)), text);
         // An angle out of range was answered with "a whole number between 1 and 10000000".
         let least = rotations("1deg").unwrap_err();
         assert!(
@@ -260,16 +325,14 @@ mod tests {
         );
         assert!(rotations("1.07deg").is_ok());
         assert_eq!(angle_of_rotations(3600), 15.0);
-        assert_eq!(rotations("17"), Ok(17));
-        assert_eq!(rotations("15deg"), Ok(3600));
-        for text in ["0", "0deg", "15 rad", "deg", "10000001", "-3", "1.5"] {
-            assert!(rotations(text).is_err(), "{text}");
+        for (text, count) in [("17", 17), ("15deg", 3600), ("6deg", 56_250), ("180deg", 2)] {
+            assert_eq!(rotations(text), Ok(count), "{text}");
         }
-        assert_eq!(rotations_of_text("15"), Ok(3600));
-        assert_eq!(rotations_of_text("6"), Ok(56_250));
-        assert_eq!(rotations_of_text("180"), Ok(2));
-        for text in ["0", "-15", "nan", "inf", "0.01", "200", "x"] {
-            assert!(rotations_of_text(text).is_err(), "{text}");
+        for text in [
+            "0", "0deg", "15 rad", "deg", "10000001", "-3", "1.5", "-15deg", "nandeg", "infdeg",
+            "0.01deg", "200deg",
+        ] {
+            assert!(rotations(text).is_err(), "{text}");
         }
     }
 
@@ -316,32 +379,31 @@ mod tests {
     }
 
     #[test]
-    fn shares_of_one_and_of_a_hundred() {
-        assert_eq!(protrusion("1"), Ok(1.0));
-        assert_eq!(plddt("100"), Ok(100.0));
-        for text in ["0", "-1", "100.1", "nan", ""] {
-            assert!(plddt(text).is_err(), "{text}");
-        }
-        assert!(
-            ["-0.1", "1.1", "nan", ""]
-                .iter()
-                .all(|text| protrusion(text).is_err())
-        );
-    }
-
-    #[test]
-    fn numbers_that_no_option_can_take_are_refused() {
+    fn numbers_out_of_range_are_refused_and_zeros_have_no_sign() {
+        let real = |range: Range, text: &str| read::<f64>(&range, text);
         for text in ["nan", "inf", "-1", "", "1e999"] {
-            assert!(above_zero(text).is_err(), "{text}");
-            assert!(not_negative(text).is_err(), "{text}");
+            assert!(real(ABOVE_ZERO, text).is_err(), "{text}");
+            assert!(real(NOT_NEGATIVE, text).is_err(), "{text}");
         }
-        assert!(above_zero("0").is_err());
-        assert_eq!(not_negative("-0").map(f64::to_bits), Ok(0));
-        assert!(at_least_one("0").is_err());
+        assert_eq!(
+            real(ABOVE_ZERO, "0"),
+            Err("it must be a finite number above 0".to_owned())
+        );
+        assert_eq!(
+            real(SHARE, "1.1"),
+            Err("it must be a finite number above 0 and at most 1".to_owned())
+        );
+        assert_eq!(
+            read::<usize>(&AT_LEAST_ONE, "0"),
+            Err("it must be a whole number of 1 or more".to_owned())
+        );
+        assert_eq!(real(NOT_NEGATIVE, "-0").map(f64::to_bits), Ok(0));
+        let ph = Range::between(0.0, 14.0);
         for text in ["nan", "-1", "14.1", "", "inf"] {
-            assert!(number(0.0..=14.0)(text).is_err(), "{text}");
+            assert!(real(ph, text).is_err(), "{text}");
         }
-        assert_eq!(number(0.0..=14.0)("-0").map(f64::to_bits), Ok(0));
-        assert!(["0", "1.1", "nan"].iter().all(|text| share(text).is_err()));
+        assert_eq!(real(ph, "-0").map(f64::to_bits), Ok(0));
+        assert!(Rule::<f64>::check(&ph, &f64::NAN).is_err());
+        assert!(["0", "nan"].iter().all(|text| real(SHARE, text).is_err()));
     }
 }

@@ -2,6 +2,8 @@
 
 use std::path::PathBuf;
 
+use knotdock_structures::Error;
+
 use crate::predictions::table::COLUMNS;
 use crate::table_text::named_columns::{AtLine, TableFault};
 
@@ -15,6 +17,18 @@ pub struct PredictionError {
     pub line: Option<usize>,
     /// The fault.
     pub fault: Box<PredictionFault>,
+}
+
+impl From<PredictionError> for Error {
+    fn from(error: PredictionError) -> Self {
+        let refused = Self::input(&error)
+            .on_line(error.line.map(|line| line as u64))
+            .help(error.remedy());
+        match error.path.as_deref() {
+            Some(path) => refused.at(path),
+            None => refused,
+        }
+    }
 }
 
 impl PredictionError {

@@ -39,7 +39,7 @@ impl ActiveResidues {
         let any = residues.iter().any(|side| !side.is_empty());
         Self {
             sets: if any { vec![residues] } else { Vec::new() },
-            weight: options.terms.weights.get("active_residues"),
+            weight: options.terms.active_weight,
             assumed: None,
         }
     }
@@ -175,7 +175,7 @@ mod tests {
             |options| options.restraints.active_ligand = Some("B:5".parse().unwrap()),
             |options| {
                 options.restraints.active_receptor = Some("A:20".parse().unwrap());
-                options.terms.weights.set("active_residues", 0.0);
+                options.terms.active_weight = 0.0;
             },
         ];
         for change in changes {

@@ -19,10 +19,10 @@ impl FlexibleRegions {
     /// The regions of two molecules. A region is left empty if its pose term has no weight.
     pub(crate) fn of(molecules: [&Molecule; 2], options: &DockOptions) -> Self {
         let mut regions = Self::default();
-        if options.terms.weights.get("unresolved") > 0.0 {
+        if options.terms.unresolved_weight > 0.0 {
             regions.unresolved = molecules.map(Molecule::unresolved_residues);
         }
-        if options.terms.weights.get("termini") > 0.0 {
+        if options.terms.termini_weight > 0.0 {
             regions.termini = molecules.map(Molecule::termini);
         }
         regions

@@ -5,9 +5,9 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{DistanceRestraints, Membrane, PredictedResidue};
 use knotdock_structures::molecule::Molecule;
 
-use crate::error::SearchError;
 use crate::options::RestraintOptions;
 use crate::restraints::FileRestraints;
+use knotdock_structures::Error;
 
 /// Distance restraints with how many of them a pose has to satisfy, predictions of the interface, and a membrane.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -30,19 +30,19 @@ impl Restrained {
     /// The restraints and predictions of the options; none without files.
     ///
     /// # Errors
-    /// [`SearchError`] where a file does not fit the molecules, or has fewer restraints than have to be satisfied.
+    /// [`Error`] where a file does not fit the molecules, or has fewer restraints than have to be satisfied.
     pub(crate) fn new(
         molecules: [&Molecule; 2],
         options: &RestraintOptions,
-    ) -> Result<Self, SearchError> {
+    ) -> Result<Self, Error> {
         let sources = [&options.interface_receptor, &options.interface_ligand];
         let mut predicted = [Vec::new(), Vec::new()];
         for (side, source) in sources.into_iter().enumerate() {
             if let Some(source) = source {
                 let residues = source.residues(molecules[side]);
-                predicted[side] = residues.map_err(|error| SearchError::Predictions {
-                    side: ["receptor", "ligand"][side],
-                    error,
+                predicted[side] = residues.map_err(|error| {
+                    let side = ["receptor", "ligand"][side];
+                    Error::from(error).within(format!("of the {side}"))
                 })?;
             }
         }
@@ -60,9 +60,14 @@ impl Restrained {
             within_one_molecule,
         } = file.between(molecules, options.crosslink, options.tbl_bounds)?;
         let (needed, count) = (options.restraints_need, list.len());
-        let needed = needed
-            .of(count)
-            .ok_or(SearchError::RestraintsNeed { needed, count })?;
+        let needed = needed.of(count).ok_or_else(|| {
+            Error::input(format!(
+                "{needed} restraints have to be satisfied, and there are {count}"
+            ))
+            .help(format!(
+                "give --restraints-need a number up to {count}, or a share"
+            ))
+        })?;
         let widened = list
             .iter()
             .map(|restraint| restraint.upper - restraint.written_upper)

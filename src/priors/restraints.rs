@@ -1,9 +1,10 @@
 //! Roles of atoms in contacts: excluded ones, by residues that the user blocks and by priors, and active ones.
 
-use crate::error::SearchError;
+use crate::options::refused;
 use crate::options::{AntibodySurface, DockOptions};
 use crate::priors::{Site, SiteRole};
 use knotdock_scoring::terms::effect::restraint::ResidueRole;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{Molecule, ResidueSelection};
 
 /// Roles of the atoms of both sides in contacts.
@@ -22,12 +23,12 @@ impl Restraints {
     /// are active.
     ///
     /// # Errors
-    /// [`SearchError::Option`] when residues are named that a molecule does not have.
+    /// [`Error`] when residues are named that a molecule does not have.
     pub fn new(
         molecules: [&Molecule; 2],
         sites: [&[Site]; 2],
         options: &DockOptions,
-    ) -> Result<Self, SearchError> {
+    ) -> Result<Self, Error> {
         let mut restraints = Self::default();
         let mut reasons = Vec::new();
         for (side, named) in named_residues(options).into_iter().enumerate() {
@@ -107,13 +108,13 @@ fn named_residues(options: &DockOptions) -> [Named<'_>; 2] {
     [
         Named {
             side: "receptor",
-            blocked: named("block-receptor", &restraints.block_receptor),
-            active: named("active-receptor", &restraints.active_receptor),
+            blocked: named("block_receptor", &restraints.block_receptor),
+            active: named("active_receptor", &restraints.active_receptor),
         },
         Named {
             side: "ligand",
-            blocked: named("block-ligand", &restraints.block_ligand),
-            active: named("active-ligand", &restraints.active_ligand),
+            blocked: named("block_ligand", &restraints.block_ligand),
+            active: named("active_ligand", &restraints.active_ligand),
         },
     ]
 }
@@ -124,14 +125,12 @@ fn selected(
     side: &str,
     option: &'static str,
     residues: &ResidueSelection,
-) -> Result<Vec<bool>, SearchError> {
-    molecule
-        .selected(residues)
-        .map_err(|unknown| SearchError::Option {
-            name: option,
-            value: unknown.part.clone(),
-            bound: format!("residues that the {side} has, among {}", unknown.present()),
-        })
+) -> Result<Vec<bool>, Error> {
+    molecule.selected(residues).map_err(|unknown| {
+        let bound = format!("residues that the {side} has, among {}", unknown.present());
+        refused(option, &unknown.part, &bound)
+            .help("name residues that the file has, by chain and number")
+    })
 }
 
 #[cfg(test)]

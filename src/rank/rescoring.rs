@@ -35,7 +35,6 @@ impl<'a> Rescoring<'a> {
         regions: &'a FlexibleRegions,
         options: &'a DockOptions,
     ) -> Self {
-        let weights = &options.terms.weights;
         Self {
             inputs: TermInputs {
                 bodies,
@@ -53,7 +52,7 @@ impl<'a> Rescoring<'a> {
             },
             weights: std::array::from_fn(|index| match POSE_TERMS[index].id {
                 "active_residues" => active.weight,
-                id => weights.get(id),
+                id => options.terms.weight(id).unwrap_or(0.0),
             }),
         }
     }

@@ -2,6 +2,8 @@
 
 use std::path::{Path, PathBuf};
 
+use knotdock_structures::Error;
+
 use crate::restraints::crosslink;
 use crate::table_text::named_columns::{AtLine, TableFault, shortened};
 
@@ -17,6 +19,18 @@ pub struct RestraintFileError {
     pub column: Option<usize>,
     /// The fault.
     pub fault: Box<RestraintFault>,
+}
+
+impl From<RestraintFileError> for Error {
+    fn from(error: RestraintFileError) -> Self {
+        let refused = Self::input(&error)
+            .on_line(error.line.map(|line| line as u64))
+            .help(error.remedy());
+        match Some(error.path.as_path()) {
+            Some(path) => refused.at(path),
+            None => refused,
+        }
+    }
 }
 
 impl RestraintFileError {

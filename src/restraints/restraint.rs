@@ -1,6 +1,5 @@
 //! One restraint, and how much of them is kept.
 
-use clap::ValueEnum;
 use knotdock_scoring::terms::pose::DistanceRestraint;
 use serde::{Deserialize, Serialize};
 
@@ -16,7 +15,7 @@ pub struct FileRestraints {
 }
 
 /// How upper bounds of a `.tbl` are taken.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize, ValueEnum)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TblBounds {
     /// Widened for the hydrogens that HADDOCK counts and that are not read.

@@ -6,7 +6,6 @@
 //! They are as many and as widely spaced, so the list of poses keeps its length and its spread, with better poses in
 //! its best regions. (Keeping every fine peak would fill the list with copies of the best few.)
 
-use crate::error::SearchError;
 use crate::pose_space::rotations::RotationSample;
 use crate::progress::Progress;
 use crate::search::plan::SearchPlan;
@@ -14,6 +13,7 @@ use crate::search::scan::scan;
 use crate::search::scan_engine::ScanEngine;
 use knotdock_scoring::peaks::{NEIGHBOURS, Peak};
 use knotdock_scoring::transform::Real;
+use knotdock_structures::Error;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 use serde::Serialize;
@@ -37,7 +37,7 @@ pub(crate) fn search_finer<T: Real>(
     engine: &ScanEngine<T>,
     coarse: Vec<Peak>,
     progress: &dyn Progress,
-) -> Result<(Vec<Peak>, FineSearched), SearchError> {
+) -> Result<(Vec<Peak>, FineSearched), Error> {
     let RotationSample {
         coarse: set,
         fine: fine_set,

@@ -1,6 +1,5 @@
 //! The scan of all rotations: the best grid poses that it finds.
 
-use crate::error::SearchError;
 use crate::pose_space::rotations::RotationGroup;
 use crate::progress::Progress;
 use crate::search::allowed::Region;
@@ -8,10 +7,13 @@ use crate::search::deadline::Deadline;
 use crate::search::plan::SearchPlan;
 use crate::search::scan_engine::ScanEngine;
 #[cfg(feature = "gpu")]
+use crate::search::scan_engine::no_graphics;
+#[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::{Peak, find_peaks, find_peaks_among};
 use knotdock_scoring::transform::Real;
+use knotdock_structures::Error;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use std::time::Instant;
@@ -30,7 +32,7 @@ pub(crate) struct Scanned {
 /// The best `most` peaks over the rotations given: over the first of them, where a deadline comes before the last.
 ///
 /// # Errors
-/// [`SearchError::Graphics`] where the graphics processor fails, [`SearchError::Ended`] where `progress` ends the run.
+/// [`Error`] where the graphics processor fails, [`Error`] where `progress` ends the run.
 pub(crate) fn scan<T: Real>(
     plan: &SearchPlan,
     engine: &ScanEngine<T>,
@@ -38,7 +40,7 @@ pub(crate) fn scan<T: Real>(
     most: usize,
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
-) -> Result<Scanned, SearchError> {
+) -> Result<Scanned, Error> {
     // No list grows beyond all peaks that there are.
     let most = most.min(plan.rotations.images * groups.len() * plan.per_rotation);
     let at_least = |least| scan_on_cores(plan, engine, groups, (most, least), deadline, progress);
@@ -78,7 +80,7 @@ fn scan_on_card(
     groups: &[RotationGroup],
     most: usize,
     progress: &dyn Progress,
-) -> Result<Scanned, SearchError> {
+) -> Result<Scanned, Error> {
     // Peaks that come back together.
     const TOGETHER: usize = 1 << 20;
     let part = (TOGETHER / (plan.rotations.images * plan.per_rotation)).max(1);
@@ -90,7 +92,8 @@ fn scan_on_card(
             wanted: group.wanted,
         };
         let turns: Vec<Turn> = groups.iter().map(turn).collect();
-        let found = gpu.best(&turns, |images| progress.advance(images as u64))?;
+        let found = gpu.best(&turns, |images| progress.advance(images as u64));
+        let found = found.map_err(no_graphics)?;
         peaks.extend(found.into_iter().map(|peak| Peak {
             score: f64::from(peak.score),
             rotation: (groups[peak.turn].first + peak.image) as u32,

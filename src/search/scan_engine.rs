@@ -1,16 +1,16 @@
 //! Engines of a run: the CPU's cores, or a graphics processor with an engine on the CPU beside it.
 
-use crate::error::SearchError;
 use crate::options::EngineChoice;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::transform::Real;
+use knotdock_structures::Error;
 use serde::Serialize;
 
 #[cfg(feature = "gpu")]
-use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, GpuError};
+use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine};
 #[cfg(feature = "gpu")]
 use knotdock_scoring::peaks::NEIGHBOURS;
 
@@ -64,11 +64,11 @@ impl<T: Real> ScanEngine<T> {
     }
 }
 
-#[cfg(feature = "gpu")]
-impl From<GpuError> for SearchError {
-    fn from(error: GpuError) -> Self {
-        Self::Graphics(error.to_string())
-    }
+/// A graphics processor that cannot be used.
+pub(super) fn no_graphics(error: impl std::fmt::Display) -> Error {
+    Error::input(format!("--engine gpu: {error}")).help(
+        "dock with --engine cpu, or see docs/method/engines.md for what a graphics processor needs",
+    )
 }
 
 #[cfg(feature = "gpu")]
@@ -76,8 +76,8 @@ impl<T: Real> ScanEngine<T> {
     /// Takes an engine to where the plan wants it.
     ///
     /// # Errors
-    /// [`SearchError::Graphics`] where there is no graphics processor, or it cannot be used.
-    pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
+    /// [`Error`] where there is no graphics processor, or it cannot be used.
+    pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, Error> {
         if plan.device == EngineChoice::Cpu {
             return Ok(Self {
                 cpu,
@@ -87,14 +87,15 @@ impl<T: Real> ScanEngine<T> {
             });
         }
         let wanted = std::env::var(ADAPTER_VARIABLE).ok();
-        let device = GpuDevice::open(wanted.as_deref())?;
+        let device = GpuDevice::open(wanted.as_deref()).map_err(no_graphics)?;
         let gpu = GpuEngine::new(
             &device,
             &cpu,
             plan.per_rotation,
             NEIGHBOURS,
             plan.graphics_bytes,
-        )?;
+        )
+        .map_err(no_graphics)?;
         let adapter = Adapter {
             name: device.name().to_owned(),
             backend: device.backend(),
@@ -115,17 +116,15 @@ impl<T: Real> ScanEngine<T> {
     /// The engine as it is.
     ///
     /// # Errors
-    /// [`SearchError::Graphics`] where a graphics processor is wanted, for this build has none.
-    pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, SearchError> {
+    /// [`Error`] where a graphics processor is wanted, for this build has none.
+    pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, Error> {
         match plan.device {
             EngineChoice::Cpu => Ok(Self {
                 cpu,
                 adapter: None,
                 in_flight: plan.in_flight,
             }),
-            EngineChoice::Gpu => Err(SearchError::Graphics(
-                "this build was made without the feature `gpu`".to_owned(),
-            )),
+            EngineChoice::Gpu => Err(no_graphics("this build was made without the feature `gpu`")),
         }
     }
 }

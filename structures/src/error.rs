@@ -108,6 +108,15 @@ impl Error {
         }
     }
 
+    /// Adds words to the message.
+    #[must_use]
+    pub fn and(self, more: impl fmt::Display) -> Self {
+        Self {
+            message: format!("{}; {more}", self.message),
+            ..self
+        }
+    }
+
     /// The message.
     pub fn message(&self) -> &str {
         &self.message
@@ -126,6 +135,11 @@ impl Error {
     /// What the user can do.
     pub fn remedy(&self) -> Option<&str> {
         self.remedy.as_deref()
+    }
+
+    /// Whether the input or the options are at fault.
+    pub fn is_input(&self) -> bool {
+        self.cause == Cause::Input
     }
 
     /// The exit code of a program that fails with it: 2 for bad input or options, 1 for the rest.
@@ -153,6 +167,12 @@ impl Error {
             text.push(')');
         }
         text
+    }
+}
+
+impl From<crate::knots::KnotsError> for Error {
+    fn from(error: crate::knots::KnotsError) -> Self {
+        Self::input(error).help("check the structure's coordinates and radii")
     }
 }
 

@@ -68,7 +68,7 @@ fn named_residues_are_kept_free_or_touched() {
     ]);
     let attracting = DockOptions::default().changed(|attracting| {
         attracting.restraints.active_receptor = options.restraints.block_receptor.clone();
-        attracting.terms.weights.set("active_residues", 1.0);
+        attracting.terms.active_weight = 1.0;
     });
     let scene = Scene::new(&own, &other, &attracting).unwrap();
     let rescorer = scene.rescorer(&attracting).unwrap();

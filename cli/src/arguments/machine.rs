@@ -1,15 +1,34 @@
 //! The machine that a run is carried out on.
 
+use clap::Args;
 use knotdock::dock::plan::DockPlan;
-use knotdock::options::{MachineOptions, Threads};
+use knotdock::options::MachineOptions;
+use knotdock::options::values::{AT_LEAST_ONE, in_range};
 use knotdock::output::records::manifest::Machine;
+use knotdock::threads;
 
 use super::memory;
+
+/// Threads of a command.
+#[derive(Args, Clone, Copy, Debug)]
+#[command(next_help_heading = "Machine")]
+pub struct Threads {
+    /// Threads [default: all hardware threads].
+    #[arg(short = 'j', long, value_name = "COUNT", value_parser = in_range::<usize>(AT_LEAST_ONE))]
+    pub threads: Option<usize>,
+}
+
+impl Threads {
+    /// Threads to run.
+    pub fn count(self) -> usize {
+        threads::or_all(self.threads)
+    }
+}
 
 /// The options of the machine with all that they leave open.
 pub fn settled(options: &MachineOptions) -> MachineOptions {
     MachineOptions {
-        threads: options.threads.count().into(),
+        threads: Some(options.thread_count()),
         memory: options.memory.or_else(memory::default_limit),
     }
 }
@@ -19,8 +38,8 @@ pub fn machine(plan: &DockPlan) -> Machine {
     Machine {
         system: std::env::consts::OS,
         architecture: std::env::consts::ARCH,
-        hardware_threads: Threads::default().count(),
-        threads: plan.options.machine.threads.count(),
+        hardware_threads: threads::or_all(None),
+        threads: plan.options.machine.thread_count(),
         rotations_in_flight: plan.in_flight(),
         memory_limit_bytes: plan.options.machine.memory,
         memory_estimate_bytes: plan.memory_bytes(),

@@ -1,17 +1,16 @@
-//! The options of a command, as they are typed and as a file of `--config` gives them.
+//! The options of a command, as they are typed and as files of `--config` give them.
 
-use std::ffi::OsString;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
-use clap::builder::EnumValueParser;
+use clap::builder::{PossibleValuesParser, ValueParser};
+use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueHint, value_parser};
-use knotdock::options::definition::Definition;
-use knotdock::options::file::{ConfigError, Entry};
-use knotdock::options::{DockOptions, Preset, definitions, file, text};
-
-use crate::messages::failure::Failure;
+use knotdock::options::definition::{Definition, Form};
+use knotdock::options::file::GivenOption;
+use knotdock::options::{DockOptions, Preset, definitions};
+use knotdock_structures::Error;
 
 /// Which of the options of `knotdock dock` a command has.
 pub trait Selection {
@@ -29,7 +28,7 @@ impl Selection for OfDock {
     }
 }
 
-/// The options that say how a pose scores and how meshes are sampled, and the threads: of `knotdock score`.
+/// The options that decide how a pose scores and how meshes are sampled, and the threads: of `knotdock score`.
 #[derive(Clone, Debug)]
 pub struct OfScore;
 
@@ -50,7 +49,7 @@ impl Selection for OfTradeoff {
     }
 }
 
-/// The options that say what is read of a structure, and what is assumed of it: of `knotdock inspect`.
+/// The options on what is read of a structure, and what is assumed of it: of `knotdock inspect`.
 #[derive(Clone, Debug)]
 pub struct OfInspect;
 
@@ -60,17 +59,10 @@ impl Selection for OfInspect {
     }
 }
 
-/// An option with the words that give it a value.
-#[derive(Clone, Debug)]
-struct Typed {
-    name: &'static str,
-    words: Vec<OsString>,
-}
-
 /// The options of a command as they are typed.
 #[derive(Clone, Debug)]
 pub struct OptionArguments<S> {
-    typed: Vec<Typed>,
+    typed: Vec<(&'static Definition, String)>,
     preset: Option<Preset>,
     configs: Vec<PathBuf>,
     selection: PhantomData<S>,
@@ -82,10 +74,78 @@ const PRESET: &str = "preset";
 /// Name of the option that names a file of options.
 pub const CONFIG: &str = "config";
 
-/// The options of a command that words of the command line give.
-fn own<S: Selection>() -> impl Iterator<Item = &'static Definition> {
-    let typed = definitions().iter().filter(|option| !option.is_of_files());
-    typed.filter(|option| S::has(option))
+/// The parser of a preset's name.
+pub fn preset_parser() -> PossibleValuesParser {
+    let values = Preset::ALL
+        .into_iter()
+        .map(|preset| clap::builder::PossibleValue::new(preset.name).help(preset.about));
+    PossibleValuesParser::new(values)
+}
+
+/// The options that words of the command line give.
+fn typed(has: fn(&Definition) -> bool) -> impl Iterator<Item = &'static Definition> {
+    let all = definitions().iter();
+    all.filter(move |option| !option.is_of_files() && has(option))
+}
+
+/// The argument of an option.
+fn argument(option: &'static Definition) -> Arg {
+    let argument = Arg::new(option.name())
+        .long(option.long())
+        .help_heading(option.heading())
+        .help(option.short_help().to_owned());
+    let argument = match option.help().contains("\n\n") {
+        true => argument.long_help(option.help()),
+        false => argument,
+    };
+    // The program's own short names; `-j` is that of make and of most docking programs.
+    let argument = match option.name() {
+        "threads" => argument.short('j'),
+        _ => argument,
+    };
+    if option.form() == Form::Flag {
+        return argument.action(ArgAction::SetTrue);
+    }
+    let argument = argument
+        .value_name(option.value_name())
+        .value_parser(text_parser(option))
+        .action(match option.form() {
+            Form::List => ArgAction::Append,
+            _ => ArgAction::Set,
+        })
+        .allow_hyphen_values(option.form() == Form::Signed)
+        .value_hint(match option.form() {
+            Form::File => ValueHint::FilePath,
+            _ => ValueHint::Unknown,
+        });
+    match option.default_text() {
+        Some(default) => argument.default_value(default),
+        None => argument,
+    }
+}
+
+/// The parser of an option's text. Files are read later, once.
+fn text_parser(option: &'static Definition) -> ValueParser {
+    let parse = move |text: &str| -> Result<String, Error> {
+        if option.form() != Form::File {
+            option.read(&mut DockOptions::default(), text, Path::new(""))?;
+        }
+        Ok(text.to_owned())
+    };
+    ValueParser::new(parse)
+}
+
+/// The typed value of an option, if it was typed.
+fn typed_value(option: &'static Definition, matches: &ArgMatches) -> Option<String> {
+    let name = option.name();
+    if matches.value_source(name) != Some(ValueSource::CommandLine) {
+        return None;
+    }
+    if option.form() == Form::Flag {
+        return Some("true".to_owned());
+    }
+    let values = matches.get_many::<String>(name).into_iter().flatten();
+    Some(values.cloned().collect::<Vec<_>>().join(","))
 }
 
 impl<S: Selection> Args for OptionArguments<S> {
@@ -93,7 +153,7 @@ impl<S: Selection> Args for OptionArguments<S> {
         let preset = Arg::new(PRESET)
             .long(PRESET)
             .value_name("NAME")
-            .value_parser(EnumValueParser::<Preset>::new())
+            .value_parser(preset_parser())
             .help("Options by a name; `knotdock preset NAME` prints them");
         let config = Arg::new(CONFIG)
             .long(CONFIG)
@@ -109,9 +169,8 @@ impl<S: Selection> Args for OptionArguments<S> {
                  files. Weights and potentials of the score are given by files alone (`knotdock preset default --all` \
                  lists them).",
             );
-        own::<S>().fold(command.arg(preset).arg(config), |command, option| {
-            command.arg(option.argument().clone())
-        })
+        let command = command.arg(preset).arg(config);
+        command.args(typed(S::has).map(argument))
     }
 
     fn augment_args_for_update(command: Command) -> Command {
@@ -121,35 +180,72 @@ impl<S: Selection> Args for OptionArguments<S> {
 
 impl<S: Selection> FromArgMatches for OptionArguments<S> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let mut typed = Vec::new();
-        for option in own::<S>() {
-            let name = option.name();
-            if matches.value_source(name) != Some(ValueSource::CommandLine) {
-                continue;
+        let value = |option| Some((option, typed_value(option, matches)?));
+        let preset = matches.get_one::<String>(PRESET);
+        let configs = matches.get_many(CONFIG).into_iter().flatten();
+        Ok(Self {
+            typed: typed(S::has).filter_map(value).collect(),
+            preset: preset.and_then(|name| Preset::named(name)),
+            configs: configs.cloned().collect(),
+            selection: PhantomData,
+        })
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        *self = Self::from_arg_matches(matches)?;
+        Ok(())
+    }
+}
+
+/// The options on reading molecules: of commands that read some.
+#[derive(Clone, Debug)]
+pub struct OfReading;
+
+impl Selection for OfReading {
+    fn has(option: &Definition) -> bool {
+        option.subject() == "input"
+    }
+}
+
+/// The options of the machine: of commands that take much memory.
+#[derive(Clone, Debug)]
+pub struct OfMachine;
+
+impl Selection for OfMachine {
+    fn has(option: &Definition) -> bool {
+        option.subject() == "machine"
+    }
+}
+
+/// Options of a selection without files of options, as they are typed; the others have their defaults.
+#[derive(Clone, Debug)]
+pub struct TypedOptions<S> {
+    /// The options.
+    pub options: DockOptions,
+    selection: PhantomData<S>,
+}
+
+impl<S: Selection> Args for TypedOptions<S> {
+    fn augment_args(command: Command) -> Command {
+        command.args(typed(S::has).map(argument))
+    }
+
+    fn augment_args_for_update(command: Command) -> Command {
+        Self::augment_args(command)
+    }
+}
+
+impl<S: Selection> FromArgMatches for TypedOptions<S> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        let mut options = DockOptions::default();
+        for option in typed(S::has) {
+            if let Some(text) = typed_value(option, matches) {
+                let set = option.set(&mut options, &text);
+                set.map_err(|error| clap::Error::raw(ErrorKind::ValueValidation, error))?;
             }
-            let words = if option.is_flag() {
-                vec![format!("--{}", option.long()).into()]
-            } else {
-                let values = matches.get_raw(name).into_iter().flatten();
-                values
-                    .map(|value| {
-                        let mut word = OsString::from(option.word(""));
-                        word.push(value);
-                        word
-                    })
-                    .collect()
-            };
-            typed.push(Typed { name, words });
         }
         Ok(Self {
-            typed,
-            preset: matches.get_one(PRESET).copied(),
-            configs: matches
-                .get_many(CONFIG)
-                .into_iter()
-                .flatten()
-                .cloned()
-                .collect(),
+            options,
             selection: PhantomData,
         })
     }
@@ -165,24 +261,28 @@ impl<S: Selection> FromArgMatches for OptionArguments<S> {
 pub struct GivenOptions {
     /// The options, by default where they were not given.
     pub options: DockOptions,
-    given: Vec<String>,
-    /// Whether rotations were given by their angle.
-    pub by_angle: bool,
+    given: Vec<GivenOption>,
 }
 
 impl GivenOptions {
     /// Whether an option was typed, or given by a file.
     pub fn has(&self, name: &str) -> bool {
-        self.given.iter().any(|given| given == name)
+        self.given.iter().any(|given| given.name == name)
+    }
+
+    /// Whether rotations were given by their angle.
+    pub fn by_angle(&self) -> bool {
+        let rotations = self.given.iter().rfind(|given| given.name == "rotations");
+        rotations.is_some_and(|given| given.text.ends_with("deg"))
     }
 
     /// The options of a search for rings, if it is one.
-    pub fn of_rings(self) -> Result<Self, Failure> {
-        if self.options.search.symmetry.is_some() && self.by_angle {
-            return Err(Failure::input(
+    pub fn of_rings(self) -> Result<Self, Error> {
+        if self.options.search.symmetry.is_some() && self.by_angle() {
+            return Err(Error::input(
                 "--rotations is an angle here, and a search for rings counts axes",
             )
-            .remedy("give --rotations a number of axes, or leave it out"));
+            .help("give --rotations a number of axes, or leave it out"));
         }
         let rotations_given = self.has("rotations");
         Ok(Self {
@@ -196,47 +296,28 @@ impl<S: Selection> OptionArguments<S> {
     /// The options: as typed, else as the last file gives them, else as the preset does, else by default.
     ///
     /// # Errors
-    /// [`Failure`] for a file of options that cannot be read.
-    pub fn given(&self) -> Result<GivenOptions, Failure> {
-        let mut from_files = match self.preset {
-            Some(preset) => preset.entries()?,
+    /// [`Error`] for a file of options that cannot be read, and a file that an option names.
+    pub fn given(&self) -> Result<GivenOptions, Error> {
+        let mut options = DockOptions::default();
+        let mut given = match self.preset {
+            Some(preset) => preset.apply(&mut options)?,
             None => Vec::new(),
         };
         for config in &self.configs {
-            let later = entries_of(config)?;
-            from_files.retain(|entry| later.iter().all(|later| later.name != entry.name));
-            from_files.extend(later);
+            let line = config.to_str().filter(|text| text.contains('='));
+            given.extend(match line {
+                // A file that the line names is looked for from the working directory.
+                Some(line) if !config.exists() => options.read_toml(line, config)?,
+                _ => options.read_file(config)?,
+            });
         }
-        let mut words: Vec<OsString> = Vec::new();
-        let mut given: Vec<String> = Vec::new();
-        for entry in from_files {
-            if self.typed.iter().all(|typed| typed.name != entry.name) {
-                words.extend(entry.words.into_iter().map(Into::into));
-                given.push(entry.name);
-            }
+        for (option, text) in &self.typed {
+            option.set(&mut options, text)?;
+            given.push(GivenOption {
+                name: option.name(),
+                text: text.clone(),
+            });
         }
-        for typed in &self.typed {
-            words.extend(typed.words.iter().cloned());
-            given.push(typed.name.to_owned());
-        }
-        let by_angle = words.iter().any(|word| {
-            let word = word.to_string_lossy();
-            word.starts_with("--rotations=") && word.ends_with("deg")
-        });
-        let options: DockOptions = text::read(words)?;
-        Ok(GivenOptions {
-            options,
-            given,
-            by_angle,
-        })
-    }
-}
-
-/// The options of a value of `--config`: a file, or a line that is none.
-fn entries_of(config: &Path) -> Result<Vec<Entry>, ConfigError> {
-    let line = config.to_str().filter(|text| text.contains('='));
-    match line {
-        Some(line) if !config.exists() => file::read_line::<DockOptions>(line),
-        _ => file::read::<DockOptions>(config),
+        Ok(GivenOptions { options, given })
     }
 }

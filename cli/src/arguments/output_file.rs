@@ -1,12 +1,13 @@
 //! Checks of an output file: never over one that is read, and over another only on request.
 
+use knotdock::output::files::file_error;
 use std::path::{Path, PathBuf};
 
-use knotdock::output::files::whole_file::{FileError, is_link, is_stream, leftovers};
+use knotdock::output::files::whole_file::{is_link, is_stream, leftovers};
 
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
+use knotdock_structures::Error;
 
 /// Checks, before any work, that `file` can be made, is no link and none of those that are `read`, and is not there
 /// unless `force` is true; warns of what ended commands left beside it.
@@ -15,26 +16,26 @@ pub fn check_output<'a>(
     read: impl IntoIterator<Item = &'a Path>,
     force: bool,
     console: Console,
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     check_not_read(file, read)?;
     if is_link(file) {
-        return Err(FileError::link(file).into());
+        return Err(file_error::link(file).into());
     }
     // A device or a pipe is there and is meant to be written to.
     if !force && file.is_file() && !is_stream(file) {
-        return Err(Failure::input("the file is already there")
+        return Err(Error::input("the file is already there")
             .at(file)
-            .remedy("choose another name, or pass --force to replace it"));
+            .help("choose another name, or pass --force to replace it"));
     }
     let folder = file
         .parent()
         .filter(|folder| !folder.as_os_str().is_empty());
     if file.is_dir() || !folder.unwrap_or(Path::new(".")).is_dir() {
-        return Err(Failure::input(
+        return Err(Error::input(
             "cannot write this file: its folder does not exist, or the name is that of a folder",
         )
         .at(file)
-        .remedy("name a file in a folder that exists"));
+        .help("name a file in a folder that exists"));
     }
     if !is_stream(file) {
         warn_leftovers(&leftovers(file), console);
@@ -46,11 +47,11 @@ pub fn check_output<'a>(
 pub fn check_not_read<'a>(
     file: &Path,
     read: impl IntoIterator<Item = &'a Path>,
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     if read.into_iter().any(|other| is_same(file, other)) {
-        return Err(Failure::input("the output file is one of the input files")
+        return Err(Error::input("the output file is one of the input files")
             .at(file)
-            .remedy("give the output file another name"));
+            .help("give the output file another name"));
     }
     Ok(())
 }

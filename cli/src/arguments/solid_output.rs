@@ -13,7 +13,7 @@ use knotdock::geometry::Bracket;
 use knotdock::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid};
 use knotdock::geometry::bracket::{shifted, volume};
 use knotdock::geometry::surface::{Surface, surface};
-use knotdock::options::values::at_least_one;
+use knotdock::options::values::{AT_LEAST_ONE, in_range};
 use knotdock::output::files::whole_file::{StagedFile, is_stream};
 use knotdock::output::tables::fields::number;
 use knotdock_scoring::se3::Pose;
@@ -25,7 +25,7 @@ use serde_json::{Value, json};
 use crate::arguments::output_file::{check_output, is_same};
 use crate::arguments::viewer::ViewerArguments;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// What to write of a solid.
 #[derive(Args, Clone, Debug)]
@@ -52,7 +52,7 @@ pub struct SolidOutput {
     #[arg(long, value_enum, default_value_t = Side::Outer)]
     pub set: Side,
     /// Cells of a grid along the longest edge of the box around the solid.
-    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = at_least_one)]
+    #[arg(long, value_name = "COUNT", default_value_t = 64, value_parser = in_range::<usize>(AT_LEAST_ONE))]
     pub cells: usize,
     /// Replace files that are there.
     #[arg(long)]
@@ -72,10 +72,10 @@ pub enum Side {
 const MAX_CELLS: usize = 512;
 
 /// Why a file is not one that is written.
-fn unknown(option: &str, path: &Path, endings: &str) -> Failure {
-    Failure::input(format!("--{option} cannot write a file with this ending"))
+fn unknown(option: &str, path: &Path, endings: &str) -> Error {
+    Error::input(format!("--{option} cannot write a file with this ending"))
         .at(path)
-        .remedy(format!("end the name with {endings}"))
+        .help(format!("end the name with {endings}"))
 }
 
 impl SolidOutput {
@@ -85,7 +85,7 @@ impl SolidOutput {
         read: &[&Path],
         allowed: Option<u64>,
         console: Console,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), Error> {
         let files: Vec<&PathBuf> = [
             &self.output,
             &self.surface,
@@ -98,9 +98,9 @@ impl SolidOutput {
         .collect();
         for (index, file) in files.iter().enumerate() {
             if files[..index].iter().any(|other| is_same(other, file)) {
-                return Err(Failure::input("the same file is named twice")
+                return Err(Error::input("the same file is named twice")
                     .at(file)
-                    .remedy("give each output file its own name"));
+                    .help("give each output file its own name"));
             }
             check_output(file, read.iter().copied(), self.force, console)?;
         }
@@ -128,17 +128,17 @@ impl SolidOutput {
         }
         if self.cells > MAX_CELLS {
             return Err(
-                Failure::input(format!("--cells {} is more than {MAX_CELLS}", self.cells))
-                    .remedy(format!("give at most {MAX_CELLS}")),
+                Error::input(format!("--cells {} is more than {MAX_CELLS}", self.cells))
+                    .help(format!("give at most {MAX_CELLS}")),
             );
         }
         let needed = BYTES_A_NODE * (self.cells as u64 + 6).pow(3);
         match allowed {
-            Some(allowed) if needed > allowed => Err(Failure::input(format!(
+            Some(allowed) if needed > allowed => Err(Error::input(format!(
                 "a grid of {} cells needs {needed} bytes of memory, and {allowed} are allowed",
                 self.cells
             ))
-            .remedy("give fewer --cells, or allow more --memory")),
+            .help("give fewer --cells, or allow more --memory")),
             _ => Ok(()),
         }
     }
@@ -158,16 +158,15 @@ impl SolidOutput {
         (name, volumes): (&str, &Volumes),
         solid: &Bracket,
         table: Option<Knots>,
-    ) -> Result<Vec<String>, Failure> {
+    ) -> Result<Vec<String>, Error> {
         let viewer = self.viewer.read()?;
         let balls = self.chosen(solid);
         let mut staged: Vec<(StagedFile, &PathBuf)> = Vec::new();
         let wants_any =
             self.output.is_some() || self.surface.is_some() || self.volume_grid.is_some();
         if balls.is_empty() && wants_any {
-            return Err(Failure::other("the result has no balls").remedy(
-                "sample on a finer --grid and --complement-grid, or write the other --set",
-            ));
+            return Err(Error::machine("the result has no balls")
+                .help("sample on a finer --grid and --complement-grid, or write the other --set"));
         }
         if let Some(path) = &self.output {
             let knots = match table {
@@ -225,7 +224,7 @@ fn page(
     (name, volumes): (&str, &Volumes),
     solid: &Bracket,
     viewer: Option<&Viewer>,
-) -> Result<String, Failure> {
+) -> Result<String, Error> {
     let sets = [
         ("outer balls", &solid.outer, volumes.outer),
         ("inner balls", &solid.inner, volumes.inner),
@@ -267,7 +266,7 @@ fn page(
 const SHOWN_CELLS: usize = 64;
 
 /// The surface of balls, to look at; without balls it is empty.
-pub fn shown_surface(balls: &[Ball], origin: [f64; 3]) -> Result<Surface, Failure> {
+pub fn shown_surface(balls: &[Ball], origin: [f64; 3]) -> Result<Surface, Error> {
     match balls.is_empty() {
         true => Ok(Surface {
             positions: Vec::new(),
@@ -278,18 +277,18 @@ pub fn shown_surface(balls: &[Ball], origin: [f64; 3]) -> Result<Surface, Failur
 }
 
 /// The depth of balls on a grid.
-fn field(balls: &[Ball], cells: usize) -> Result<BallField, Failure> {
+fn field(balls: &[Ball], cells: usize) -> Result<BallField, Error> {
     let grid = FieldGrid::about(balls, cells).ok_or_else(|| {
-        Failure::other("the balls have no extent, so no grid can be laid over them")
+        Error::machine("the balls have no extent, so no grid can be laid over them")
     })?;
     Ok(BallField::new(&BallTree::new(balls), grid))
 }
 
 /// Balls as knots in the frame of the files.
-pub fn knots(balls: &[Ball], origin: [f64; 3]) -> Result<Knots, Failure> {
+pub fn knots(balls: &[Ball], origin: [f64; 3]) -> Result<Knots, Error> {
     let placed = balls.iter().map(|ball| shifted(ball, origin));
     let (centers, radii) = placed.map(|ball| (ball.center, ball.radius)).unzip();
-    Knots::new(centers, radii).map_err(Failure::other)
+    Knots::new(centers, radii).map_err(Error::machine)
 }
 
 /// Volumes of a result, and bounds of their errors: of the inner balls, of the outer ones.

@@ -3,6 +3,7 @@
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
+use crate::arguments::machine::Threads;
 use crate::report::{SolidsReport, Viewer};
 use crate::tables::collisions;
 use crate::tables::report::counted;
@@ -11,8 +12,7 @@ use knotdock::geometry::collide::impact::{Impact, first_impact};
 use knotdock::geometry::collide::{
     Answer, CollisionScene, Method, Quantities, Questions, Verdict, Ways, Workspace,
 };
-use knotdock::options::Threads;
-use knotdock::options::values::{count, distance, duration};
+use knotdock::options::values::{DISTANCE, Range, duration, in_range};
 use knotdock::output::files::whole_file::write_whole;
 use knotdock::threads;
 use knotdock_scoring::se3::Pose;
@@ -26,7 +26,7 @@ use crate::arguments::viewer::ViewerArguments;
 use crate::inputs::poses::{PoseArguments, pose_file};
 use crate::inputs::solids::{SolidArguments, SolidInput};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Collide two solids: hit or free at each pose, with bounds of the distance, the shared volume, force and torque.
 ///
@@ -47,7 +47,7 @@ pub struct Collide {
     #[arg(long, value_name = "FILE", conflicts_with_all = ["pose", "poses"])]
     path: Option<PathBuf>,
     /// Count poses as hits at which the solids are closer than this.
-    #[arg(long, value_name = "DISTANCE", default_value_t = 0.0, value_parser = distance)]
+    #[arg(long, value_name = "DISTANCE", default_value_t = 0.0, value_parser = in_range::<f64>(DISTANCE))]
     margin: f64,
     /// Time for a pose, such as 1ms: bounds are the best known by then, which depend on the machine.
     #[arg(long, value_name = "TIME", value_parser = duration)]
@@ -56,7 +56,7 @@ pub struct Collide {
     #[arg(long, value_enum, default_value_t = MethodName::Auto)]
     method: MethodName,
     /// The most Fourier modes that are summed, with their conjugates.
-    #[arg(long, value_name = "COUNT", default_value_t = Ways::default().modes, value_parser = count(1..=1_000_000))]
+    #[arg(long, value_name = "COUNT", default_value_t = Ways::default().modes, value_parser = in_range::<usize>(Range::between(1.0, 1e6)))]
     modes: usize,
     /// What to compute beside the verdict; with commas between.
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Compute::Distance, Compute::Volume, Compute::Force])]
@@ -120,12 +120,12 @@ const TOLERANCE: f64 = 1e-6;
 
 impl Collide {
     /// Answers.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.collide(console))?
     }
 
     /// Answers on the threads of the caller.
-    fn collide(&self, console: Console) -> Result<(), Failure> {
+    fn collide(&self, console: Console) -> Result<(), Error> {
         let poses = match &self.path {
             Some(path) => pose_file(path)?,
             None => self.poses.read()?,
@@ -145,7 +145,7 @@ impl Collide {
             modes: self.modes,
             deadline: self.deadline.map(Duration::from_secs_f64),
         };
-        let questions = Questions::new(scene, self.quantities(), ways).map_err(Failure::input)?;
+        let questions = Questions::new(scene, self.quantities(), ways).map_err(Error::input)?;
         let start = Instant::now();
         let answers = questions.answers(&poses);
         let seconds = start.elapsed().as_secs_f64();
@@ -177,7 +177,7 @@ impl Collide {
         console.result(&self.object(&solids, &questions, &poses, &answers, impact, seconds))
     }
 
-    fn read(&self) -> Result<[SolidInput; 2], Failure> {
+    fn read(&self) -> Result<[SolidInput; 2], Error> {
         let allowed = memory::default_limit();
         let first = SolidInput::read(&self.first, &self.solids, allowed)?;
         let second = if self.second == self.first {
@@ -188,7 +188,7 @@ impl Collide {
         Ok([first, second])
     }
 
-    fn check_output(&self, solids: &[SolidInput; 2], console: Console) -> Result<(), Failure> {
+    fn check_output(&self, solids: &[SolidInput; 2], console: Console) -> Result<(), Error> {
         let read: Vec<&Path> = solids
             .iter()
             .map(SolidInput::path)
@@ -198,9 +198,9 @@ impl Collide {
         if let (Some(one), Some(other)) = (&self.output, &self.report)
             && is_same(one, other)
         {
-            return Err(Failure::input("the same file is named twice")
+            return Err(Error::input("the same file is named twice")
                 .at(one)
-                .remedy("give each output file its own name"));
+                .help("give each output file its own name"));
         }
         for file in [&self.output, &self.report].into_iter().flatten() {
             check_output(file, read.iter().copied(), self.force, console)?;
@@ -215,7 +215,7 @@ impl Collide {
         questions: &Questions,
         (poses, answers): (&[Pose], &[Answer]),
         viewer: Option<&Viewer>,
-    ) -> Result<String, Failure> {
+    ) -> Result<String, Error> {
         let [a, b] = solids.each_ref().map(|input| {
             let path = input.path().file_name().unwrap_or_default();
             path.to_string_lossy().into_owned()

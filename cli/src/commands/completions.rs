@@ -1,5 +1,6 @@
 //! `knotdock completions` and `knotdock man`: what shells and `man` know of the command line, from its definition.
 
+use knotdock::output::files::file_error;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
@@ -8,8 +9,8 @@ use clap_mangen::Man;
 use serde_json::json;
 
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
-use knotdock::output::files::whole_file::{FileError, write_whole};
+use knotdock::output::files::whole_file::write_whole;
+use knotdock_structures::Error;
 
 /// Print the completions of a shell.
 ///
@@ -26,10 +27,10 @@ pub struct Completions {
 
 impl Completions {
     /// Prints them, of the command line `command`.
-    pub fn run(self, mut command: Command, console: Console) -> Result<(), Failure> {
+    pub fn run(self, mut command: Command, console: Console) -> Result<(), Error> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut command, "knotdock", &mut script);
-        let script = String::from_utf8(script).map_err(Failure::other)?;
+        let script = String::from_utf8(script).map_err(Error::machine)?;
         console.say(script.trim_end());
         console.result(&json!({ "text": script }))
     }
@@ -47,9 +48,9 @@ pub struct ManPages {
 
 impl ManPages {
     /// Writes them, of the command line `command`.
-    pub fn run(self, command: Command, console: Console) -> Result<(), Failure> {
+    pub fn run(self, command: Command, console: Console) -> Result<(), Error> {
         let directory = &self.directory;
-        let unwritable = |source| FileError::unwritable(directory, source);
+        let unwritable = |source| file_error::unwritable(directory, source);
         std::fs::create_dir_all(directory).map_err(unwritable)?;
         let mut command = shown_in_full(command.disable_help_subcommand(true));
         command.build();
@@ -68,7 +69,7 @@ fn shown_in_full(command: Command) -> Command {
 }
 
 /// Writes the page of a command and those of its own commands.
-fn write_page(command: &Command, directory: &Path, pages: &mut Vec<String>) -> Result<(), Failure> {
+fn write_page(command: &Command, directory: &Path, pages: &mut Vec<String>) -> Result<(), Error> {
     let name = command
         .get_display_name()
         .unwrap_or_else(|| command.get_name())
@@ -77,8 +78,8 @@ fn write_page(command: &Command, directory: &Path, pages: &mut Vec<String>) -> R
     let mut page = Vec::new();
     Man::new(command.clone())
         .render(&mut page)
-        .map_err(Failure::other)?;
-    let page = String::from_utf8(page).map_err(Failure::other)?;
+        .map_err(Error::machine)?;
+    let page = String::from_utf8(page).map_err(Error::machine)?;
     let page = page.replace(".SH EXTRA", ".SH EXAMPLES");
     write_whole(&path, |file| file.write_all(page.as_bytes()))?;
     pages.push(path.display().to_string());

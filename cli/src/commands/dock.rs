@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 use crate::tradeoff::choice::Wanted;
 use clap::{Arg, Args, Command, Id};
 use knotdock::dock::memory::process;
-use knotdock::options::values::{above_zero, duration};
+use knotdock::options::values::{ABOVE_ZERO, duration, in_range};
 use knotdock::options::{DockOptions, EngineChoice, option_named};
 use knotdock::threads;
 use serde_json::Value;
@@ -21,7 +21,7 @@ use crate::inputs::molecules::label;
 use crate::inputs::native::NativeArguments;
 use crate::inputs::request::Request;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Dock a ligand to a receptor and rank the poses.
 ///
@@ -58,7 +58,7 @@ pub struct Dock {
     /// Choose tolerance, spacing and precision for an error within this share of the best score.
     ///
     /// The cheapest setting is taken whose error is expected to be within it: rms over the best poses of the grid.
-    #[arg(long, value_name = "SHARE", value_parser = above_zero, help_heading = WITHIN)]
+    #[arg(long, value_name = "SHARE", value_parser = in_range::<f64>(ABOVE_ZERO), help_heading = WITHIN)]
     #[arg(conflicts_with_all = ["tolerance", "spacing"], conflicts_with = "symmetry")]
     accuracy: Option<f64>,
     /// End within a time on the clock, such as 5s or 2min.
@@ -142,7 +142,7 @@ impl Prepared {
     }
 
     /// Docks, and writes what comes of it; the JSON object. What ended commands left there is said on `notices`.
-    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
+    pub fn run(self, console: Console, notices: Console) -> Result<Value, Error> {
         match self {
             Self::Run(docking) => docking.run(console, notices),
             Self::Ensemble(ensemble) => ensemble.run(console, notices),
@@ -176,35 +176,35 @@ impl Dock {
     }
 
     /// Refuses a file of options that cannot be read.
-    pub fn check_config(&self) -> Result<(), Failure> {
+    pub fn check_config(&self) -> Result<(), Error> {
         self.options.given().map(drop)
     }
 
     /// Threads that the options name, and whether the run has to be by itself: it measures time, or works on a graphics
     /// processor.
-    pub fn own_threads(&self) -> Result<(Option<usize>, bool), Failure> {
+    pub fn own_threads(&self) -> Result<(Option<usize>, bool), Error> {
         let options = self.options.given()?.options;
         let is_alone = self.budget.is_some() || options.search.engine == EngineChoice::Gpu;
-        Ok((options.machine.threads.threads, is_alone))
+        Ok((options.machine.threads, is_alone))
     }
 
     /// The run that the command line describes.
-    fn request(&self, given: GivenOptions) -> Result<Request, Failure> {
+    fn request(&self, given: GivenOptions) -> Result<Request, Error> {
         let given = given.of_rings()?;
         let symmetry = given.options.search.symmetry;
         // Of a ring the ligand is another copy of the receptor.
         let ligand = match symmetry {
             Some(_) if self.ligand.is_some() => {
-                return Err(Failure::input(
+                return Err(Error::input(
                     "--symmetry docks copies of RECEPTOR, and LIGAND is given too",
                 )
-                .remedy("leave LIGAND out, or remove `symmetry` from the file of options"));
+                .help("leave LIGAND out, or remove `symmetry` from the file of options"));
             }
             Some(_) => self.receptor.as_ref(),
             None => self.ligand.as_ref(),
         };
         let (Some(receptor), Some(ligand)) = (&self.receptor, ligand) else {
-            return Err(Failure::input("a receptor and a ligand are needed").remedy(
+            return Err(Error::input("a receptor and a ligand are needed").help(
                 "give both files, or one with --symmetry C2 (C3, D2 ...) for a ring of its copies",
             ));
         };
@@ -217,8 +217,8 @@ impl Dock {
         self,
         console: Console,
         count: Option<usize>,
-        then: impl FnOnce(Prepared) -> Result<T, Failure> + Send,
-    ) -> Result<T, Failure> {
+        then: impl FnOnce(Prepared) -> Result<T, Error> + Send,
+    ) -> Result<T, Error> {
         let clock = Clock::start();
         process::begin();
         let mut given = self.options.given()?;
@@ -227,13 +227,13 @@ impl Dock {
         }
         // Known before anything is read, for reading takes memory, too.
         given.options.machine = settled(&given.options.machine);
-        threads::on(given.options.machine.threads.count(), || {
+        threads::on(given.options.machine.thread_count(), || {
             then(self.prepare(given, clock, console)?)
         })?
     }
 
     /// The conformations of both sides, where options name any.
-    fn sides(&self) -> Result<Option<[Vec<Conformation>; 2]>, Failure> {
+    fn sides(&self) -> Result<Option<[Vec<Conformation>; 2]>, Error> {
         let ConformationArguments {
             receptor_models,
             ligand_models,
@@ -257,7 +257,7 @@ impl Dock {
         given: GivenOptions,
         clock: Clock,
         console: Console,
-    ) -> Result<Prepared, Failure> {
+    ) -> Result<Prepared, Error> {
         let wanted = Wanted {
             accuracy: self.accuracy,
             budget: self.budget,
@@ -292,7 +292,7 @@ impl Dock {
     }
 
     /// Docks.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         let done = self.prepared(console, None, |prepared| prepared.run(console, console))?;
         console.result(&done)?;
         Ok(())
@@ -312,16 +312,16 @@ fn named_after(sides: &[Vec<Conformation>; 2]) -> PathBuf {
 }
 
 /// Refuses options for which nothing can be chosen by an error or a time.
-fn check_wanted(options: &DockOptions) -> Result<(), Failure> {
+fn check_wanted(options: &DockOptions) -> Result<(), Error> {
     if options.search.engine == EngineChoice::Gpu {
         let error = "--accuracy and --budget use the times of the CPU, and --engine gpu is given";
-        return Err(Failure::input(error)
-            .remedy("set --rotations, --tolerance and --spacing, or dock with --engine cpu"));
+        return Err(Error::input(error)
+            .help("set --rotations, --tolerance and --spacing, or dock with --engine cpu"));
     }
     if options.search.symmetry.is_some() {
         return Err(
-            Failure::input("--accuracy and --budget do not work with --symmetry")
-                .remedy("set --rotations, --tolerance and --spacing"),
+            Error::input("--accuracy and --budget do not work with --symmetry")
+                .help("set --rotations, --tolerance and --spacing"),
         );
     }
     Ok(())
@@ -330,6 +330,7 @@ fn check_wanted(options: &DockOptions) -> Result<(), Failure> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use knotdock::options::definition::Form;
     use knotdock::options::definitions;
 
     /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the
@@ -355,12 +356,9 @@ mod tests {
                 "sample_grid" => "2^12",
                 _ => "1",
             };
-            let word = if option.is_flag() {
-                format!("--{}", option.long())
-            } else if option.names_file() {
-                continue;
-            } else {
-                option.word(value)
+            let word = match option.form() {
+                Form::Flag => format!("--{}", option.long()),
+                _ => format!("--{}={value}", option.long()),
             };
             let refused = run(&word).is_err();
             assert_eq!(refused, option.subject() != "machine", "{word}");

@@ -3,11 +3,11 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use crate::arguments::machine::Threads;
 use crate::records::ensemble_record::is_ensemble;
 use crate::records::recorded_run::RecordedRun;
 use clap::{Args, ValueEnum};
 use knotdock::dock::pair::Pair;
-use knotdock::options::Threads;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::model_file::{PosedPair, model_file_name, write_model_file};
@@ -24,8 +24,8 @@ use crate::ensemble::finished::{RunRows, runs};
 use crate::inputs::bodies::Bodies;
 use crate::inputs::ranked_rows::ranked_places;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
+use knotdock_structures::Error;
 
 /// Write complexes (or assemblies of meshes) of chosen ranks of a run, receptor and placed ligand in one file.
 #[derive(Args, Debug)]
@@ -63,12 +63,12 @@ enum ExportFormat {
 
 impl Export {
     /// Writes the complexes.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.export(console))?
     }
 
     /// Writes them on the threads of the caller.
-    fn export(self, console: Console) -> Result<(), Failure> {
+    fn export(self, console: Console) -> Result<(), Error> {
         put_back(&self.run)?;
         let own = self.run.join("top");
         let folder = self.output.clone().unwrap_or(own);
@@ -128,7 +128,7 @@ impl Export {
     }
 
     /// What is written: of an ensemble the rows of each member.
-    fn exports(&self, folder: &Path) -> Result<Vec<Placed>, Failure> {
+    fn exports(&self, folder: &Path) -> Result<Vec<Placed>, Error> {
         if !is_ensemble(&self.run) {
             // A record that cannot be read says more of what is wrong than a table that is not there.
             RecordedRun::read(&self.run.join("run.json"))?;
@@ -154,18 +154,18 @@ impl Export {
             let is_no_ring = |row: &&PoseRow| arrangement.images(&row.pose).is_none();
             if let Some(PoseRow { rank, .. }) = rows.iter().find(is_no_ring) {
                 let suffix = arrangement.suffix();
-                return Err(Failure::input(format!(
+                return Err(Error::input(format!(
                     "the pose of rank {rank} forms no ring{suffix}"
                 ))
                 .at(&table_path)
-                .remedy("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
+                .help("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
             }
             let bodies = Bodies::recorded([&run.receptor, &run.ligand], &run_path, &run.options)?;
             if self.format.is_some() && bodies.are_meshes() {
                 let error = "--format is of molecules, and this is a run of meshes";
-                return Err(Failure::input(error)
+                return Err(Error::input(error)
                     .at(&run_path)
-                    .remedy("leave it out: assemblies are written as .obj"));
+                    .help("leave it out: assemblies are written as .obj"));
             }
             let models = [Format::Pdb, Format::Mmcif].map(model_file_name);
             for name in rows.iter().flat_map(|row| file_names(row.rank)).chain(models) {
@@ -184,9 +184,9 @@ impl Export {
 
 impl Placed {
     /// Each pose with its molecules.
-    fn pairs(&self) -> Result<Vec<PosedPair<'_>>, Failure> {
+    fn pairs(&self) -> Result<Vec<PosedPair<'_>>, Error> {
         let Pair::Molecules(molecules) = self.bodies.pair() else {
-            return Err(Failure::input("these are meshes, not molecules"));
+            return Err(Error::input("these are meshes, not molecules"));
         };
         let posed = self.rows.iter().map(|row| PosedPair {
             molecules,

@@ -20,7 +20,7 @@ use crate::arguments::output_file::{check_output, is_same};
 use crate::inputs::molecules::Input;
 use crate::messages::console::Console;
 use crate::messages::dock::metal_bound;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges
 /// assumed.
@@ -52,7 +52,7 @@ fn surface_points(atoms: usize) -> usize {
 
 impl Inspect {
     /// Inspects.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         let options = self.options.given()?.options;
         let reading = options.input.reading();
         let ph = options.terms.ph;
@@ -68,9 +68,9 @@ impl Inspect {
         let molecule = &input.molecule;
         if let (Some(file), Some(format)) = (&self.write, format) {
             fits(format, molecule).map_err(|error| {
-                Failure::input(error)
+                Error::input(error)
                     .at(file)
-                    .remedy("give the file a name that ends in .cif")
+                    .help("give the file a name that ends in .cif")
             })?;
         }
         let found = Inspection::of(molecule, ph)?;
@@ -97,11 +97,7 @@ impl Inspect {
     }
 
     /// Refuses files to write that are there or coincide; returns the format of `--write`.
-    fn checked_outputs(
-        &self,
-        structure: &Path,
-        console: Console,
-    ) -> Result<Option<Format>, Failure> {
+    fn checked_outputs(&self, structure: &Path, console: Console) -> Result<Option<Format>, Error> {
         if let Some(file) = &self.atoms {
             check_output(file, [structure], self.force, console)?;
         }
@@ -114,9 +110,9 @@ impl Inspect {
             .as_ref()
             .is_some_and(|atoms| is_same(atoms, file))
         {
-            return Err(Failure::input("--atoms and --write name the same file")
+            return Err(Error::input("--atoms and --write name the same file")
                 .at(file)
-                .remedy("give each a name of its own"));
+                .help("give each a name of its own"));
         }
         Ok(Some(written_format(file)?))
     }
@@ -139,7 +135,7 @@ struct Inspection {
 
 impl Inspection {
     /// Inspects a molecule at a pH.
-    fn of(molecule: &Molecule, ph: f64) -> Result<Self, Failure> {
+    fn of(molecule: &Molecule, ph: f64) -> Result<Self, Error> {
         let labels = molecule.labels(ph);
         let area = molecule
             .accessible_areas(surface_points(molecule.atoms.len()))
@@ -151,8 +147,8 @@ impl Inspection {
         let termini = molecule.termini();
         let counts = term_counts::of(molecule, &labels, &unresolved, &termini);
         Ok(Self {
-            counts: counts.map_err(Failure::input)?,
-            volume: union_volume(&molecule.knots().map_err(Failure::input)?),
+            counts: counts.map_err(Error::input)?,
+            volume: union_volume(&molecule.knots().map_err(Error::input)?),
             labels: labels.report,
             unresolved,
             termini,
@@ -162,7 +158,7 @@ impl Inspection {
     }
 
     /// The entries of the result.
-    fn entries(self, input: &Input) -> Result<Value, Failure> {
+    fn entries(self, input: &Input) -> Result<Value, Error> {
         let mut entries = Map::new();
         entries.insert("input".to_owned(), json!(input.entry()?));
         entries.insert("labels".to_owned(), json!(self.labels));
@@ -200,11 +196,11 @@ fn counts_text(counts: &[(&TermDefinition, usize)]) -> String {
 }
 
 /// The format of the file to write.
-fn written_format(file: &Path) -> Result<Format, Failure> {
+fn written_format(file: &Path) -> Result<Format, Error> {
     molecule_file::format_of_name(file).ok_or_else(|| {
-        Failure::input("the name of the structure to write ends neither in .pdb nor in .cif")
+        Error::input("the name of the structure to write ends neither in .pdb nor in .cif")
             .at(file)
-            .remedy("end the name in .pdb or .cif")
+            .help("end the name in .pdb or .cif")
     })
 }
 

@@ -16,8 +16,7 @@ use crate::arguments::options::{OfScore, OptionArguments};
 use crate::arguments::output_file::check_output;
 use crate::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_model};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
-use crate::messages::library_errors::refused;
+use knotdock_structures::Error;
 
 /// Describe the interface of complexes: contacts, hydrogen bonds, salt bridges, buried surface, and the score of each.
 ///
@@ -44,15 +43,15 @@ pub struct InterfaceCommand {
 
 impl InterfaceCommand {
     /// Describes the complexes; the exit code: 2 where some could not be.
-    pub fn run(self, console: Console) -> Result<u8, Failure> {
+    pub fn run(self, console: Console) -> Result<u8, Error> {
         let options = self.options.given()?.options;
-        threads::on(options.machine.threads.count(), || {
+        threads::on(options.machine.thread_count(), || {
             self.describe(&options, console)
         })?
     }
 
     /// Describes them on the threads of the caller.
-    fn describe(&self, options: &DockOptions, console: Console) -> Result<u8, Failure> {
+    fn describe(&self, options: &DockOptions, console: Console) -> Result<u8, Error> {
         let (files, sides) = files_and_chains(&self.words, "interface")?;
         let read: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
         for file in [&self.output, &self.contacts].into_iter().flatten() {
@@ -78,18 +77,18 @@ impl InterfaceCommand {
 }
 
 /// The interface of a model of a file.
-fn row(file: &str, sides: ComplexSides, options: &DockOptions) -> Result<InterfaceRow, Failure> {
+fn row(file: &str, sides: ComplexSides, options: &DockOptions) -> Result<InterfaceRow, Error> {
     let molecules: [&Molecule; 2] = sides.molecules.each_ref();
     let interface = Interface::of(molecules, options.terms.ph);
     if interface.pairs.is_empty() {
-        return Err(Failure::input(format!(
+        return Err(Error::input(format!(
             "the sides do not touch: no heavy atoms of chains {} and {} are within 5 Å of each other",
             sides.chains[0], sides.chains[1]
         ))
         .at(&sides.path)
-        .remedy("name the chains of both sides, as in `knotdock interface x.pdb H,L A`"));
+        .help("name the chains of both sides, as in `knotdock interface x.pdb H,L A`"));
     }
-    let score: PlacedScore = score_in_place(molecules, options).map_err(refused)?;
+    let score: PlacedScore = score_in_place(molecules, options)?;
     Ok(InterfaceRow {
         file: file.to_owned(),
         model: sides.model,

@@ -8,8 +8,8 @@ use clap::Args;
 use serde_json::json;
 
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
+use knotdock_structures::Error;
 
 /// Put the shards of a batch together, in the order of its table of pairs.
 ///
@@ -32,15 +32,15 @@ pub struct Merge {
 
 impl Merge {
     /// Merges.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         let out = match (self.output, self.directories.as_slice()) {
             (Some(out), _) => out,
             (None, [one]) => one.clone(),
             (None, _) => {
-                return Err(Failure::input(
+                return Err(Error::input(
                     "several directories are given, and it is not known where the merged tables go",
                 )
-                .remedy("name one with -o"));
+                .help("name one with -o"));
             }
         };
         let Merged {

@@ -1,5 +1,6 @@
 //! `knotdock morph`: morphological operations on solids.
 
+use crate::arguments::options::{OfMachine, TypedOptions};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
@@ -10,8 +11,8 @@ use knotdock::geometry::morphology::sweep::{SweepOptions, sample_count, sweep};
 use knotdock::geometry::morphology::{
     MorphologyError, MorphologyOptions, closed, dilated, offset, opened,
 };
-use knotdock::options::values::{above_zero, distance, length};
-use knotdock::options::{MachineOptions, SampleGrid};
+use knotdock::options::SampleGrid;
+use knotdock::options::values::{ABOVE_ZERO, DISTANCE, LENGTH, in_range};
 use knotdock::threads;
 use knotdock_structures::mesh::Figure;
 use serde_json::json;
@@ -21,7 +22,7 @@ use crate::arguments::solid_output::{SolidOutput, Volumes};
 use crate::inputs::poses::pose_file;
 use crate::inputs::solids::{SolidArguments, SolidInput};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Grow, shrink, open, close, add, subtract and sweep solids: the result lies between two sets of balls.
 ///
@@ -42,7 +43,7 @@ enum Operation {
         #[arg(value_name = "SOLID")]
         first: String,
         /// Distance, in the unit of the file.
-        #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = length)]
+        #[arg(long, value_name = "LENGTH", allow_negative_numbers = true, value_parser = in_range::<f64>(LENGTH))]
         distance: f64,
         #[command(flatten)]
         common: Common,
@@ -65,11 +66,11 @@ enum Operation {
         path: PathBuf,
         /// Most that a point of the solid moves between two samples; outer balls grow by half of it [default: 2% of the
         /// solid's longest edge].
-        #[arg(long, value_name = "LENGTH", value_parser = above_zero)]
+        #[arg(long, value_name = "LENGTH", value_parser = in_range::<f64>(ABOVE_ZERO))]
         step: Option<f64>,
         /// How far each pose may vary, as a radius of geodesic balls: sqrt(2 angle^2 + shift^2), in radians and the
         /// file's unit.
-        #[arg(long, value_name = "RADIUS", default_value_t = 0.0, value_parser = distance)]
+        #[arg(long, value_name = "RADIUS", default_value_t = 0.0, value_parser = in_range::<f64>(DISTANCE))]
         tolerance: f64,
         #[command(flatten)]
         common: Common,
@@ -119,7 +120,7 @@ struct Common {
     )]
     complement_grid: SampleGrid,
     #[command(flatten)]
-    machine: MachineOptions,
+    machine: TypedOptions<OfMachine>,
 }
 
 /// Step of a sweep as a share of the solid's longest edge.
@@ -172,15 +173,26 @@ impl Operation {
 
 impl Morph {
     /// Computes.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
-        let threads = self.operation.common().machine.threads.count();
+    pub fn run(self, console: Console) -> Result<(), Error> {
+        let threads = self
+            .operation
+            .common()
+            .machine
+            .options
+            .machine
+            .thread_count();
         threads::on(threads, || self.compute(console))?
     }
 
-    fn compute(&self, console: Console) -> Result<(), Failure> {
+    fn compute(&self, console: Console) -> Result<(), Error> {
         let operation = &self.operation;
         let common = operation.common();
-        let allowed = common.machine.memory.or_else(memory::default_limit);
+        let allowed = common
+            .machine
+            .options
+            .machine
+            .memory
+            .or_else(memory::default_limit);
         let poses = operation.pose_file().map(pose_file).transpose()?;
         let inputs: Vec<SolidInput> = (operation.solids().into_iter())
             .map(|text| SolidInput::read(text, &common.solids, allowed))
@@ -258,10 +270,10 @@ fn result(
     }
 }
 
-fn refused(error: &MorphologyError) -> Failure {
+fn refused(error: &MorphologyError) -> Error {
     let MorphologyError::Memory { needed, .. } = error;
     let least = knotdock::memory_size::as_size(knotdock::memory_size::named(*needed));
-    Failure::input(error).remedy(format!(
+    Error::input(error).help(format!(
         "use a coarser --grid or --complement-grid, or fewer poses, or allow at least --memory {least}"
     ))
 }

@@ -1,5 +1,6 @@
 //! `knotdock obstacle`: the translations at which two solids meet.
 
+use crate::arguments::options::{OfMachine, TypedOptions};
 use std::path::Path;
 
 use clap::Args;
@@ -9,8 +10,7 @@ use knotdock::geometry::gap::{GapWay, gap_ways};
 use knotdock::geometry::obstacle::pairs::PairSums;
 use knotdock::geometry::obstacle::regions::free_regions;
 use knotdock::geometry::obstacle::{mirrored, sum};
-use knotdock::options::MachineOptions;
-use knotdock::options::values::{at_least_one, length};
+use knotdock::options::values::{AT_LEAST_ONE, LENGTH, in_range};
 use knotdock::output::files::whole_file::StagedFile;
 use knotdock::threads;
 use knotdock_scoring::se3::Pose;
@@ -25,7 +25,7 @@ use crate::inputs::poses::rotation;
 use crate::inputs::room::room_for_balls;
 use crate::inputs::solids::{SolidArguments, SolidInput};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Compute the obstacle of two solids: the translations of B at which it meets A, at one rotation or over many.
 ///
@@ -49,7 +49,7 @@ pub struct Obstacle {
     )]
     rotation: Option<String>,
     /// Many rotations, spread evenly: -o is then a table of volumes and free regions, a row a rotation.
-    #[arg(long, value_name = "COUNT", value_parser = at_least_one, conflicts_with_all = ["surface", "volume_grid", "picture", "report", "set", "reduce"])]
+    #[arg(long, value_name = "COUNT", value_parser = in_range::<usize>(AT_LEAST_ONE), conflicts_with_all = ["surface", "volume_grid", "picture", "report", "set", "reduce"])]
     rotations: Option<usize>,
     /// Length added to each radius, another slice of the lifted obstacle: a clearance, or, below zero, an overlap that
     /// is allowed.
@@ -58,7 +58,7 @@ pub struct Obstacle {
         value_name = "LENGTH",
         default_value_t = 0.0,
         allow_negative_numbers = true,
-        value_parser = length
+        value_parser = in_range::<f64>(LENGTH)
     )]
     offset: f64,
     /// Write no ball that lies in another one; without it the table holds a ball for each pair.
@@ -66,14 +66,14 @@ pub struct Obstacle {
     reduce: bool,
     /// Compute the gap function on a grid of N points an axis by each way too, with residuals and times; N is rounded up
     /// to a multiple of four.
-    #[arg(long, value_name = "COUNT", value_parser = at_least_one, conflicts_with = "rotations")]
+    #[arg(long, value_name = "COUNT", value_parser = in_range::<usize>(AT_LEAST_ONE), conflicts_with = "rotations")]
     gap_grid: Option<usize>,
     #[command(flatten)]
     output: SolidOutput,
     #[command(flatten)]
     solids: SolidArguments,
     #[command(flatten)]
-    machine: MachineOptions,
+    machine: TypedOptions<OfMachine>,
 }
 
 /// An obstacle with what is reported of it.
@@ -86,12 +86,16 @@ struct Found {
 
 impl Obstacle {
     /// Computes.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
-        threads::on(self.machine.threads.count(), || self.compute(console))?
+    pub fn run(self, console: Console) -> Result<(), Error> {
+        threads::on(self.machine.options.machine.thread_count(), || {
+            self.compute(console)
+        })?
     }
 
-    fn compute(&self, console: Console) -> Result<(), Failure> {
+    fn compute(&self, console: Console) -> Result<(), Error> {
         let allowed = self
+            .machine
+            .options
             .machine
             .memory
             .or_else(crate::arguments::memory::default_limit);
@@ -123,7 +127,7 @@ impl Obstacle {
         rotation: &Pose,
         [first, second]: [Value; 2],
         console: Console,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), Error> {
         let found = self.found(a, b, rotation);
         let table = match (&self.output.output, self.reduce) {
             (Some(_), false) => {
@@ -194,7 +198,7 @@ impl Obstacle {
         count: usize,
         [first, second]: [Value; 2],
         console: Console,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), Error> {
         let mut rows = Vec::with_capacity(count);
         for rotation in rotation_set(count) {
             let pose = Pose {
@@ -251,11 +255,11 @@ fn gap(
     mirror: &Bracket,
     per_axis: usize,
     console: Console,
-) -> Result<Vec<GapWay>, Failure> {
+) -> Result<Vec<GapWay>, Error> {
     if per_axis > MAX_GAP_GRID {
         return Err(
-            Failure::input(format!("--gap-grid {per_axis} is more than {MAX_GAP_GRID}"))
-                .remedy(format!("give at most {MAX_GAP_GRID}")),
+            Error::input(format!("--gap-grid {per_axis} is more than {MAX_GAP_GRID}"))
+                .help(format!("give at most {MAX_GAP_GRID}")),
         );
     }
     let per_axis = per_axis.max(16).next_multiple_of(4);
@@ -266,7 +270,7 @@ fn gap(
             radius: ball.radius,
         })
         .collect();
-    let ways = gap_ways(&a.inner, &turned, per_axis).map_err(Failure::other)?;
+    let ways = gap_ways(&a.inner, &turned, per_axis).map_err(Error::machine)?;
     console.say(format!(
         "\nGap function of the inner balls on {per_axis}^3 points; residuals as shares of its peak:\n  {:<28}{:>10}{:>13}{:>13}{:>13}",
         "way", "modes", "seconds", "residual", "Hausdorff"
@@ -303,7 +307,7 @@ impl Found {
     }
 }
 
-fn write_rows(rows: &[([f64; 4], Found)], path: &Path) -> Result<StagedFile, Failure> {
+fn write_rows(rows: &[([f64; 4], Found)], path: &Path) -> Result<StagedFile, Error> {
     let written = StagedFile::write(path, |file| {
         writeln!(
             file,

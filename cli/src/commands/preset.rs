@@ -5,10 +5,11 @@ use std::fmt::Write as _;
 use clap::Args;
 use serde_json::{Value, json};
 
+use crate::arguments::options::preset_parser;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use knotdock::options::definition::Definition;
-use knotdock::options::{DockOptions, Preset, definitions, text};
+use knotdock::options::{DockOptions, Preset, definitions};
+use knotdock_structures::Error;
 
 /// Print the options of a preset as a file for --config.
 ///
@@ -16,8 +17,8 @@ use knotdock::options::{DockOptions, Preset, definitions, text};
 #[derive(Args, Debug)]
 pub struct PresetCommand {
     /// The preset.
-    #[arg(value_enum, value_name = "NAME")]
-    name: Preset,
+    #[arg(value_name = "NAME", value_parser = preset_parser())]
+    name: String,
     /// Print every option with its value, weights and potentials among them.
     #[arg(long)]
     all: bool,
@@ -25,10 +26,12 @@ pub struct PresetCommand {
 
 impl PresetCommand {
     /// Prints it.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
+        // The parser takes no other name.
+        let preset = Preset::named(&self.name).unwrap_or(Preset::ALL[0]);
         let text = match self.all {
-            true => all_options(self.name)?,
-            false => self.name.text().to_owned(),
+            true => all_options(preset)?,
+            false => preset.text.to_owned(),
         };
         console.say(text.trim_end());
         console.result(&json!({ "text": text }))
@@ -36,11 +39,10 @@ impl PresetCommand {
 }
 
 /// Every option as a line of a file, a table a subject. Options without a value stand in comments.
-fn all_options(preset: Preset) -> Result<String, Failure> {
-    let entries = preset.entries()?;
-    let words = entries.into_iter().flat_map(|entry| entry.words);
-    let options: DockOptions = text::read(words.map(Into::into))?;
-    let record = serde_json::to_value(&options).map_err(Failure::other)?;
+fn all_options(preset: Preset) -> Result<String, Error> {
+    let mut options = DockOptions::default();
+    preset.apply(&mut options)?;
+    let record = serde_json::to_value(&options).map_err(Error::machine)?;
     let mut file = String::new();
     let mut subject = "";
     for option in definitions() {
@@ -73,21 +75,16 @@ fn value(option: &Definition, record: &Value) -> Option<String> {
 mod tests {
     use std::path::Path;
 
-    use clap::ValueEnum;
-
     use super::*;
-    use knotdock::options::file::read_text;
 
     #[test]
     fn a_file_of_all_options_is_the_preset() {
-        let read = |entries: Vec<knotdock::options::file::Entry>| -> DockOptions {
-            let words = entries.into_iter().flat_map(|entry| entry.words);
-            text::read(words.map(Into::into)).unwrap()
-        };
-        for preset in Preset::value_variants() {
-            let file = all_options(*preset).unwrap_or_else(|_| panic!("{preset:?}"));
-            let entries = read_text::<DockOptions>(&file, Path::new("all.toml")).unwrap();
-            assert_eq!(read(entries), read(preset.entries().unwrap()));
+        for preset in Preset::ALL {
+            let file = all_options(preset).unwrap();
+            let [mut read, mut expected] = [(); 2].map(|()| DockOptions::default());
+            read.read_toml(&file, Path::new("all.toml")).unwrap();
+            preset.apply(&mut expected).unwrap();
+            assert_eq!(read, expected);
             for option in definitions() {
                 assert!(file.contains(&format!("{} =", option.name())));
             }

@@ -4,12 +4,12 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
+use crate::arguments::machine::Threads;
 use crate::records::recorded_run::RecordedRun;
 use crate::tables::refined;
 use crate::tables::report::counted;
 use clap::Args;
-use knotdock::options::Threads;
-use knotdock::options::values::not_negative;
+use knotdock::options::values::{NOT_NEGATIVE, in_range};
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::complexes::file_names;
 use knotdock::output::files::staging::put_back;
@@ -26,9 +26,9 @@ use crate::inputs::molecules::Input;
 use crate::inputs::native::{NativeArguments, NativeFiles};
 use crate::inputs::ranked_rows::ranked_rows;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
 use crate::refining::{Known, Refining, Written};
+use knotdock_structures::Error;
 
 /// Refine chosen poses of a run at atomic resolution: the ligand moves, and side chains of the interface are packed.
 ///
@@ -42,7 +42,7 @@ pub struct Refine {
     #[arg(long, alias = "rank", value_name = "RANKS")]
     ranks: Ranks,
     /// Farthest that the ligand may move, as the RMSD of its atoms, in Å; a lower energy farther away is another pose.
-    #[arg(long, value_name = "ANGSTROM", default_value_t = 3.0, value_parser = not_negative)]
+    #[arg(long, value_name = "ANGSTROM", default_value_t = 3.0, value_parser = in_range::<f64>(NOT_NEGATIVE))]
     max_move: f64,
     /// Leave the ligand where it is.
     #[arg(long, conflicts_with_all = ["no_side_chains", "max_move"])]
@@ -67,12 +67,12 @@ const TABLE: &str = "refined.csv";
 
 impl Refine {
     /// Refines.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.refine(console))?
     }
 
     /// Refines on the threads of the caller.
-    fn refine(self, console: Console) -> Result<(), Failure> {
+    fn refine(self, console: Console) -> Result<(), Error> {
         let start = Instant::now();
         put_back(&self.run)?;
         let run_path = self.run.join("run.json");
@@ -117,7 +117,7 @@ impl Refine {
     }
 
     /// Refuses a directory with poses of other ranks, before anything is refined: its table would not have them.
-    fn refuse_other_ranks(&self, folder: &Path, rows: &[PoseRow]) -> Result<(), Failure> {
+    fn refuse_other_ranks(&self, folder: &Path, rows: &[PoseRow]) -> Result<(), Error> {
         let path = folder.join(TABLE);
         // A pipe there would be waited for; it is refused when the table is written.
         let table = path.is_file().then(|| PoseTable::read(&path).ok());
@@ -132,52 +132,52 @@ impl Refine {
     }
 
     /// The directory to write to: not the run's own, whose complexes are those of its ranking.
-    fn folder(&self) -> Result<PathBuf, Failure> {
+    fn folder(&self) -> Result<PathBuf, Error> {
         let own = self.run.join("refined");
         let folder = self.output.clone().unwrap_or(own);
         let of_run = [self.run.clone(), self.run.join("top")];
         if of_run.iter().any(|own| is_same(own, &folder)) {
-            return Err(Failure::input(
+            return Err(Error::input(
                 "that directory holds the run itself, and refined complexes have the same names",
             )
             .at(&folder)
-            .remedy("choose another directory with -o"));
+            .help("choose another directory with -o"));
         }
         Ok(folder)
     }
 }
 
 /// The refusal of a directory with refined poses that differ from those to write, as `at` shows: `how` says in what.
-fn held(at: &Path, how: &str) -> Failure {
-    Failure::input(format!("the directory holds poses refined {how}"))
+fn held(at: &Path, how: &str) -> Error {
+    Error::input(format!("the directory holds poses refined {how}"))
         .at(at)
-        .remedy("choose another directory with -o, or pass --force to replace them")
+        .help("choose another directory with -o, or pass --force to replace them")
 }
 
 /// Refuses the run of a ring, whose copies would each need a move and side chains of their own.
-fn refuse_ring(run: &RecordedRun, run_path: &Path) -> Result<(), Failure> {
+fn refuse_ring(run: &RecordedRun, run_path: &Path) -> Result<(), Error> {
     let arrangement = Arrangement::from(run.options.search.symmetry);
     if !arrangement.is_ring() {
         return Ok(());
     }
-    Err(Failure::input(format!(
+    Err(Error::input(format!(
         "the run is{}, and rings are not refined: a copy that moves by itself leaves the ring, and packed side chains \
          would differ from copy to copy",
         arrangement.suffix()
     ))
     .at(run_path)
-    .remedy("refine a run of two molecules; `knotdock export` writes complexes of rings"))
+    .help("refine a run of two molecules; `knotdock export` writes complexes of rings"))
 }
 
 /// The two molecules of a run.
-fn molecules(run: &RecordedRun, run_path: &Path) -> Result<Box<[Input; 2]>, Failure> {
+fn molecules(run: &RecordedRun, run_path: &Path) -> Result<Box<[Input; 2]>, Error> {
     match Bodies::recorded([&run.receptor, &run.ligand], run_path, &run.options)? {
         Bodies::Molecules(inputs) => Ok(inputs),
-        Bodies::Meshes(_) => Err(Failure::input(
+        Bodies::Meshes(_) => Err(Error::input(
             "this is a run of meshes, which have no atoms to refine",
         )
         .at(run_path)
-        .remedy("refine a run of two molecules; `knotdock export` writes assemblies of meshes")),
+        .help("refine a run of two molecules; `knotdock export` writes assemblies of meshes")),
     }
 }
 
@@ -188,7 +188,7 @@ fn report(
     folder: &Path,
     seconds: f64,
     console: Console,
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     let path = |name: &str| folder.join(name).display().to_string();
     let cpu = written.cpu_seconds_per_pose;
     let cost = cpu.map(|cpu| format!(", {cpu:.2} s of a processor each,"));

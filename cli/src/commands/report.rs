@@ -2,11 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::arguments::machine::Threads;
 use crate::records::recorded_run::{RecordedRun, RecordedRunError};
 use crate::report::{Listed, RunReport, Viewer};
 use clap::Args;
 use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
-use knotdock::options::Threads;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::is_run;
 use knotdock::output::files::seal::{REPORT, is_sealed};
@@ -18,8 +18,8 @@ use serde_json::{Value, json};
 use crate::arguments::viewer::ViewerArguments;
 use crate::inputs::bodies::Bodies;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
+use knotdock_structures::Error;
 
 /// Write report.html of runs, batches, ensembles and sweeps: results as a table, in three dimensions and in charts.
 ///
@@ -41,11 +41,11 @@ pub struct Report {
 
 impl Report {
     /// Writes the reports.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.write(console))?
     }
 
-    fn write(self, console: Console) -> Result<(), Failure> {
+    fn write(self, console: Console) -> Result<(), Error> {
         let viewer = self.viewer.read()?;
         let mut written: Vec<String> = Vec::new();
         for run in &self.runs {
@@ -53,9 +53,9 @@ impl Report {
             let path = run.join(REPORT);
             if path.symlink_metadata().is_ok() && !is_sealed(&path) && !self.force {
                 return Err(
-                    Failure::input("the report there was changed since it was written")
+                    Error::input("the report there was changed since it was written")
                         .at(&path)
-                        .remedy("keep it under another name, or pass --force to replace it"),
+                        .help("keep it under another name, or pass --force to replace it"),
                 );
             }
             let text = page(run, viewer.as_ref())?;
@@ -68,7 +68,7 @@ impl Report {
 }
 
 /// Writes the report of a batch into its directory. One that someone has changed stays.
-pub fn write_listed(directory: &Path, console: Console) -> Result<(), Failure> {
+pub fn write_listed(directory: &Path, console: Console) -> Result<(), Error> {
     let path = directory.join(REPORT);
     if path.symlink_metadata().is_ok() && !is_sealed(&path) {
         console.warn(format!(
@@ -82,7 +82,7 @@ pub fn write_listed(directory: &Path, console: Console) -> Result<(), Failure> {
 }
 
 /// Writes a report into a directory; what ended commands left there.
-fn place(directory: &Path, text: &str, force: bool) -> Result<Vec<PathBuf>, Failure> {
+fn place(directory: &Path, text: &str, force: bool) -> Result<Vec<PathBuf>, Error> {
     let addition = Addition::open(directory, is_run(directory).then_some(directory))?;
     let leftovers = addition.leftovers.clone();
     let stage = addition.stage();
@@ -92,7 +92,7 @@ fn place(directory: &Path, text: &str, force: bool) -> Result<Vec<PathBuf>, Fail
 }
 
 /// The page of a directory.
-fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Failure> {
+fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Error> {
     let name = directory.display().to_string();
     if let Some(listed) = Listed::in_directory(directory) {
         return Ok(listed.report(directory, directory, &name)?);
@@ -114,12 +114,12 @@ fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Failure> {
 }
 
 /// A record as JSON.
-fn value(path: &Path) -> Result<Value, Failure> {
+fn value(path: &Path) -> Result<Value, Error> {
     let open = |source| RecordedRunError::Open {
         path: path.to_owned(),
         source,
     };
     let bytes = read_bounded_file(path, MAX_RECORD).map_err(open)?;
     let value = serde_json::from_slice(&bytes);
-    value.map_err(|error| Failure::input(error).at(path))
+    value.map_err(|error| Error::input(error).at(path))
 }

@@ -4,7 +4,7 @@ use crate::tables::report;
 use clap::{Args, ValueEnum};
 use knotdock::dock::scene::Scene;
 use knotdock::options::DockOptions;
-use knotdock::options::values::at_least_one;
+use knotdock::options::values::{AT_LEAST_ONE, in_range};
 use knotdock::pose_geometry::PoseGeometry;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::score::{self, LADDER_ERROR, PoseScore, ScoreOptions};
@@ -23,8 +23,7 @@ use crate::inputs::shapes::is_shape;
 use crate::inputs::traces::refuse_traces;
 use crate::messages::console::Console;
 use crate::messages::dock::{known_text, regions_text, site_text};
-use crate::messages::failure::Failure;
-use crate::messages::library_errors::refused;
+use knotdock_structures::Error;
 
 /// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
 ///
@@ -43,7 +42,7 @@ pub struct Score {
     #[arg(long, value_name = "QW,QX,QY,QZ,TX,TY,TZ", allow_hyphen_values = true)]
     pose: String,
     /// A number of modes that the table is to contain.
-    #[arg(long, value_name = "COUNT", value_parser = at_least_one)]
+    #[arg(long, value_name = "COUNT", value_parser = in_range::<usize>(AT_LEAST_ONE))]
     modes: Option<usize>,
     /// Which modes come first.
     #[arg(long, value_enum, default_value_t = Order::LowFrequency)]
@@ -63,14 +62,14 @@ enum Order {
 
 impl Score {
     /// Scores.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         let pose = pose(&self.pose)?;
         let given = self.options.given()?;
         let mut are_meshes = false;
         for text in [&self.receptor, &self.ligand] {
             are_meshes |= is_shape(&spec_of(text)?.path);
         }
-        threads::on(given.options.machine.threads.count(), || {
+        threads::on(given.options.machine.thread_count(), || {
             if are_meshes {
                 self.score_meshes(&pose, given, console)
             } else {
@@ -98,21 +97,21 @@ impl Score {
         pose: &Pose,
         given: GivenOptions,
         console: Console,
-    ) -> Result<(), Failure> {
+    ) -> Result<(), Error> {
         let lengths = lengths(&given);
         let mut dock = given.options;
         let bodies = Bodies::read(&self.receptor, &self.ligand, &dock)?;
         bodies.describe(Arrangement::Pair, console);
         let Some(sampling) = bodies.sampling(&mut dock, lengths, console)? else {
-            return Err(Failure::input("two meshes are needed"));
+            return Err(Error::input("two meshes are needed"));
         };
-        let scene = Scene::of_meshes(&sampling.pair, &dock).map_err(refused)?;
-        let scored = score::score(&scene, pose, &self.ladder(&dock)).map_err(refused)?;
+        let scene = Scene::of_meshes(&sampling.pair, &dock)?;
+        let scored = score::score(&scene, pose, &self.ladder(&dock))?;
         console.say(format!("\n{}", ladder_text(&scored, "unit")));
-        let mut object = serde_json::to_value(&scored).map_err(Failure::other)?;
+        let mut object = serde_json::to_value(&scored).map_err(Error::machine)?;
         if let Some(object) = object.as_object_mut() {
             object.insert("pose".to_owned(), pose_numbers(pose));
-            let parts = serde_json::to_value(&sampling.pair.parts).map_err(Failure::other)?;
+            let parts = serde_json::to_value(&sampling.pair.parts).map_err(Error::machine)?;
             object.insert("sampling".to_owned(), parts);
             object.insert("pose_score".to_owned(), serde_json::json!(scored.exact));
         }
@@ -121,7 +120,7 @@ impl Score {
     }
 
     /// Scores on the threads of the caller.
-    fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Failure> {
+    fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Error> {
         let options = self.ladder(dock);
         let reading = dock.input.reading();
         let inputs = Input::read_all([&self.receptor, &self.ligand], &reading)?;
@@ -129,9 +128,9 @@ impl Score {
         let [receptor, ligand] = inputs.map(|input| input.molecule);
         console.say(format!("Receptor: {}", receptor.report));
         console.say(format!("Ligand: {}", ligand.report));
-        let scene = Scene::new(&receptor, &ligand, dock).map_err(refused)?;
-        let scored = score::score(&scene, pose, &options).map_err(refused)?;
-        let geometry = PoseGeometry::of(&receptor, &ligand, pose).map_err(Failure::input)?;
+        let scene = Scene::new(&receptor, &ligand, dock)?;
+        let scored = score::score(&scene, pose, &options)?;
+        let geometry = PoseGeometry::of(&receptor, &ligand, pose).map_err(Error::input)?;
         let pose_terms = scene
             .rescorer(dock)
             .map_or_else(TermValues::default, |rescorer| {
@@ -159,13 +158,13 @@ impl Score {
                 "all modes are in and the error is above its mark: the grid is too coarse for the kernel; leave --spacing out",
             );
         }
-        let mut object = serde_json::to_value(&scored).map_err(Failure::other)?;
+        let mut object = serde_json::to_value(&scored).map_err(Error::machine)?;
         if let Some(object) = object.as_object_mut() {
-            let geometry = serde_json::to_value(geometry).map_err(Failure::other)?;
+            let geometry = serde_json::to_value(geometry).map_err(Error::machine)?;
             object.insert("geometry".to_owned(), geometry);
-            let site = serde_json::to_value(scene.active_site()).map_err(Failure::other)?;
+            let site = serde_json::to_value(scene.active_site()).map_err(Error::machine)?;
             object.insert("active_site".to_owned(), site);
-            let regions = serde_json::to_value(&scene.regions).map_err(Failure::other)?;
+            let regions = serde_json::to_value(&scene.regions).map_err(Error::machine)?;
             object.extend(regions.as_object().cloned().unwrap_or_default());
             object.insert("pose".to_owned(), pose_numbers(pose));
             for (term, value) in pose_terms.iter() {

@@ -6,14 +6,14 @@ use crate::tables::pose_list::write_list;
 use clap::{Args, Subcommand};
 use knotdock::geometry::motion::geodesic::{angle, distance, path};
 use knotdock::geometry::motion::tolerance::geodesic_ball;
-use knotdock::options::values::{at_least_one, distance as radius};
+use knotdock::options::values::{AT_LEAST_ONE, DISTANCE, in_range};
 use knotdock_scoring::se3::Pose;
 use serde_json::json;
 
 use crate::arguments::output_file::check_output;
 use crate::inputs::poses::pose;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Measure and sample rigid motions: distance, geodesics, geodesic balls as sets of tolerance.
 ///
@@ -45,7 +45,7 @@ enum Question {
         #[arg(value_name = "Q", allow_hyphen_values = true)]
         second: String,
         /// Steps: one pose more is written.
-        #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = at_least_one)]
+        #[arg(long, value_name = "COUNT", default_value_t = 10, value_parser = in_range::<usize>(AT_LEAST_ONE))]
         steps: usize,
         #[command(flatten)]
         output: PoseOutput,
@@ -56,10 +56,10 @@ enum Question {
         #[arg(value_name = "P", allow_hyphen_values = true)]
         center: String,
         /// Distance up to which poses are taken.
-        #[arg(long, value_name = "RADIUS", value_parser = radius)]
+        #[arg(long, value_name = "RADIUS", value_parser = in_range::<f64>(DISTANCE))]
         radius: f64,
         /// Number of poses.
-        #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = at_least_one)]
+        #[arg(long, value_name = "COUNT", default_value_t = 100, value_parser = in_range::<usize>(AT_LEAST_ONE))]
         count: usize,
         #[command(flatten)]
         output: PoseOutput,
@@ -80,7 +80,7 @@ struct PoseOutput {
 const MAX_POSES: usize = 10_000_000;
 
 impl PoseOutput {
-    fn write(&self, poses: &[Pose], console: Console) -> Result<(), Failure> {
+    fn write(&self, poses: &[Pose], console: Console) -> Result<(), Error> {
         write_list(&self.output, poses)?.place()?;
         console.say(format!(
             "Wrote {} poses to {}",
@@ -90,11 +90,11 @@ impl PoseOutput {
         Ok(())
     }
 
-    fn check(&self, count: usize, console: Console) -> Result<(), Failure> {
+    fn check(&self, count: usize, console: Console) -> Result<(), Error> {
         if count > MAX_POSES {
             return Err(
-                Failure::input(format!("{count} poses are more than {MAX_POSES}"))
-                    .remedy(format!("take at most {MAX_POSES}")),
+                Error::input(format!("{count} poses are more than {MAX_POSES}"))
+                    .help(format!("take at most {MAX_POSES}")),
             );
         }
         check_output(
@@ -108,7 +108,7 @@ impl PoseOutput {
 
 impl Se3 {
     /// Answers.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         match &self.question {
             Question::Distance { first, second } => {
                 let [p, q] = [pose(first)?, pose(second)?];

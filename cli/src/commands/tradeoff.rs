@@ -9,7 +9,6 @@ use crate::tradeoff::advice::advice;
 use crate::tradeoff::plot::plot;
 use crate::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
 use clap::Args;
-use knotdock::dock::pair::PairError;
 use knotdock::options::EngineChoice;
 use knotdock::options::definition::Scope;
 use knotdock::output::files::own_files::TRADEOFF;
@@ -24,8 +23,8 @@ use crate::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
 use crate::inputs::native::NativeArguments;
 use crate::inputs::request::{Known, Request};
 use crate::messages::console::{Console, ProgressLine};
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
+use knotdock_structures::Error;
 
 /// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
 /// and with combinations.
@@ -63,20 +62,20 @@ fn parameters_help() -> String {
 
 impl TradeoffCommand {
     /// Sweeps.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         let mut given = self.options.given()?;
         given.options.machine = settled(&given.options.machine);
         if given.options.search.symmetry.is_some() {
-            return Err(Failure::input("`knotdock tradeoff` does not dock rings")
-                .remedy("remove `symmetry` from the file of options"));
+            return Err(Error::input("`knotdock tradeoff` does not dock rings")
+                .help("remove `symmetry` from the file of options"));
         }
-        threads::on(given.options.machine.threads.count(), || {
+        threads::on(given.options.machine.thread_count(), || {
             self.sweep(given, console)
         })?
     }
 
     /// Sweeps on the threads of the caller.
-    fn sweep(self, given: GivenOptions, console: Console) -> Result<(), Failure> {
+    fn sweep(self, given: GivenOptions, console: Console) -> Result<(), Error> {
         let pair = [&self.receptor, &self.ligand];
         let mut request = Request::read(pair, self.native.read()?, given)?;
         check(&request, self.parameters.as_deref().unwrap_or_default())?;
@@ -105,12 +104,11 @@ impl TradeoffCommand {
             &parameters,
             known.as_ref().and_then(Known::evaluator),
             &progress,
-        )
-        .map_err(|error| failure(&error))?;
+        )?;
         drop(progress);
 
         let advice = advice(&tradeoff);
-        let svg = plot(&tradeoff).map_err(Failure::other)?;
+        let svg = plot(&tradeoff).map_err(Error::machine)?;
         staging.write("tradeoff.svg", |file| file.write_all(svg.as_bytes()))?;
         staging.write("tradeoff.csv", |file| write_table(&tradeoff, file))?;
         let record = TradeoffRecord::new(TradeoffParts {
@@ -122,7 +120,7 @@ impl TradeoffCommand {
             files: staging.checksums()?,
             machine,
         })
-        .map_err(Failure::other)?;
+        .map_err(Error::machine)?;
         staging.write("tradeoff.json", |file| record.write_to(file))?;
         let name = directory.display().to_string();
         let text = Listed::Tradeoff.report(&directory, staging.folder(), &name)?;
@@ -140,17 +138,17 @@ impl TradeoffCommand {
             "directory": directory.display().to_string(),
             "table": csv,
             "picture": svg,
-            "tradeoff": serde_json::to_value(&record).map_err(Failure::other)?,
+            "tradeoff": serde_json::to_value(&record).map_err(Error::machine)?,
         }))?;
         Ok(())
     }
 }
 
 /// Refuses a search on a graphics processor, and parameters without effect on the inputs.
-fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Failure> {
+fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Error> {
     if request.options.search.engine == EngineChoice::Gpu {
         let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
-        return Err(Failure::input(error).remedy("leave out --engine gpu"));
+        return Err(Error::input(error).help("leave out --engine gpu"));
     }
     let other = if request.bodies.are_meshes() {
         Scope::Molecules
@@ -160,19 +158,9 @@ fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Failure> {
     if let Some(idle) = parameters.iter().find(|one| one.scope() == other) {
         let name = idle.name();
         let error = format!("the option {name} has no effect on such inputs");
-        return Err(Failure::input(error).remedy("name other parameters"));
+        return Err(Error::input(error).help("name other parameters"));
     }
     Ok(())
-}
-
-/// A failure of the default or the reference: of the request where it could not be planned.
-fn failure(error: &PairError) -> Failure {
-    use knotdock::error::SearchError;
-    let failure = match error {
-        PairError::Search(SearchError::Threads(_) | SearchError::NoPose) => Failure::other(error),
-        _ => Failure::input(error),
-    };
-    failure.remedy(error.remedy())
 }
 
 /// Settings by time, with what most want to know of them.

@@ -6,7 +6,7 @@ use crate::records::ensemble_record::{MEMBERS, is_ensemble};
 use knotdock::ensemble::table::MEMBER;
 use knotdock::output::tables::poses::PoseTable;
 
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// A run, and its rows of a table.
 pub struct RunRows {
@@ -20,8 +20,8 @@ pub struct RunRows {
 /// which the rows name them.
 ///
 /// # Errors
-/// [`Failure`] where a row of an ensemble names no member.
-pub fn runs(directory: &Path, table: &PoseTable, rows: &[usize]) -> Result<Vec<RunRows>, Failure> {
+/// [`Error`] where a row of an ensemble names no member.
+pub fn runs(directory: &Path, table: &PoseTable, rows: &[usize]) -> Result<Vec<RunRows>, Error> {
     if !is_ensemble(directory) {
         let run = directory.join("run.json");
         let rows = rows.to_vec();
@@ -32,7 +32,7 @@ pub fn runs(directory: &Path, table: &PoseTable, rows: &[usize]) -> Result<Vec<R
         let name = table.field(row, MEMBER).unwrap_or_default();
         if !is_member(name) {
             let error = format!("'{name}' in column `{MEMBER}` is no member of an ensemble");
-            return Err(Failure::input(error).at(&directory.join("poses.csv")).remedy(
+            return Err(Error::input(error).at(&directory.join("poses.csv")).help(
                 "take the table as `knotdock dock` wrote it, or name the run of a member: a folder in members/",
             ));
         }

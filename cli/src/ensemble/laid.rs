@@ -11,7 +11,7 @@ use knotdock_structures::molecule::{InputSpec, Molecule};
 use crate::inputs::bodies::Bodies;
 use crate::inputs::conformations::Conformation;
 use crate::inputs::molecules::Input;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// A conformation that lies on the first of its side.
 pub struct Laid {
@@ -28,10 +28,10 @@ pub struct Laid {
 }
 
 impl Laid {
-    fn new(conformation: &Conformation, input: &Input, first: &Molecule) -> Result<Self, Failure> {
+    fn new(conformation: &Conformation, input: &Input, first: &Molecule) -> Result<Self, Error> {
         let place = superpose(&input.molecule, first).map_err(|error| {
-            let failure = Failure::input(&error).at(&input.record.path);
-            failure.remedy(error.remedy())
+            let failure = Error::input(&error).at(&input.record.path);
+            failure.help(error.remedy())
         })?;
         Ok(Self {
             name: conformation.name.clone(),
@@ -81,14 +81,14 @@ impl LaidSides {
     /// Reads all conformations as they will be read for docking, and lays each on the first of its side.
     ///
     /// # Errors
-    /// [`Failure`] where one cannot be read or is another molecule.
-    pub fn read(sides: &[Vec<Conformation>; 2], options: &DockOptions) -> Result<Self, Failure> {
+    /// [`Error`] where one cannot be read or is another molecule.
+    pub fn read(sides: &[Vec<Conformation>; 2], options: &DockOptions) -> Result<Self, Error> {
         let pair = |receptor: &Conformation, ligand: &Conformation| {
             read_pair([&receptor.spec, &ligand.spec], options)
         };
         let [receptors, ligands] = sides;
         let ([receptor, ..], [ligand, ..]) = (receptors.as_slice(), ligands.as_slice()) else {
-            return Err(Failure::other("a side of the ensemble has no conformation"));
+            return Err(Error::machine("a side of the ensemble has no conformation"));
         };
         let firsts = pair(receptor, ligand)?;
         let firsts = firsts.each_ref().map(|input| &input.molecule);
@@ -99,7 +99,7 @@ impl LaidSides {
             };
             Laid::new(conformation, &inputs[side], firsts[side])
         };
-        let of_side = |side: usize| -> Result<Vec<Laid>, Failure> {
+        let of_side = |side: usize| -> Result<Vec<Laid>, Error> {
             let conformations = sides[side].iter();
             conformations.map(|one| laid(side, one)).collect()
         };
@@ -111,10 +111,10 @@ impl LaidSides {
 }
 
 /// The molecules of a pair.
-fn read_pair(specs: [&InputSpec; 2], options: &DockOptions) -> Result<Box<[Input; 2]>, Failure> {
+fn read_pair(specs: [&InputSpec; 2], options: &DockOptions) -> Result<Box<[Input; 2]>, Error> {
     match Bodies::of(specs.map(InputSpec::clone), options)? {
         Bodies::Molecules(inputs) => Ok(inputs),
-        Bodies::Meshes(_) => Err(Failure::input(
+        Bodies::Meshes(_) => Err(Error::input(
             "only molecules can be docked as ensembles, and these are meshes",
         )),
     }

@@ -9,7 +9,7 @@ use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::{ENSEMBLE, MEMBERS, is_run};
 use knotdock::output::files::staging::{Stage, Staging};
 
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Names that a directory may hold in which an ensemble was begun.
 const BEGUN: [&str; 6] = [
@@ -33,8 +33,8 @@ impl Place {
     /// The place of an ensemble in a directory: beside it where it holds another run and `force` is true.
     ///
     /// # Errors
-    /// [`Failure`] where the directory holds anything but an ensemble that was begun.
-    pub fn open(directory: &Path, force: bool) -> Result<Self, Failure> {
+    /// [`Error`] where the directory holds anything but an ensemble that was begun.
+    pub fn open(directory: &Path, force: bool) -> Result<Self, Error> {
         let is_begun = match std::fs::read_dir(directory) {
             Ok(entries) => entries.flatten().all(|entry| {
                 let name = entry.file_name();
@@ -78,8 +78,8 @@ impl Place {
     /// Puts the joint files into their place.
     ///
     /// # Errors
-    /// [`Failure`] where they cannot be.
-    pub fn commit(self) -> Result<(), Failure> {
+    /// [`Error`] where they cannot be.
+    pub fn commit(self) -> Result<(), Error> {
         match self {
             Self::New(_, addition) => addition.place(false)?,
             Self::Replacing(staging) => staging.commit()?,

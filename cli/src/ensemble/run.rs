@@ -23,9 +23,9 @@ use crate::inputs::native::NativeFiles;
 use crate::inputs::request::Request;
 use crate::messages::brief::time_text;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
 use crate::messages::run_summary::summary_line;
+use knotdock_structures::Error;
 
 /// Conformations of two molecules, each pair of which is docked.
 pub struct Ensemble {
@@ -47,18 +47,18 @@ impl Ensemble {
     /// Reads all conformations, plans the largest pair and says what all will cost.
     ///
     /// # Errors
-    /// [`Failure`] where a conformation cannot be used, and where memory does not suffice for the largest pair.
+    /// [`Error`] where a conformation cannot be used, and where memory does not suffice for the largest pair.
     pub fn prepare(
         sides: &[Vec<Conformation>; 2],
         (given, native, wanted): (GivenOptions, Option<NativeFiles>, Wanted),
         (directory, force): (PathBuf, bool),
         clock: Clock,
         console: Console,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         if given.options.search.symmetry.is_some() {
             return Err(
-                Failure::input("--symmetry docks one conformation, and several are given")
-                    .remedy("dock each conformation in a run of its own"),
+                Error::input("--symmetry docks one conformation, and several are given")
+                    .help("dock each conformation in a run of its own"),
             );
         }
         let laid = LaidSides::read(sides, &given.options)?;
@@ -103,18 +103,13 @@ impl Ensemble {
     }
 
     /// Plans a member's run, for the folder that it will have in the end.
-    fn planned(&self, member: Member, console: Console) -> Result<Docking, Failure> {
+    fn planned(&self, member: Member, console: Console) -> Result<Docking, Error> {
         let folder = self.directory.join(MEMBERS).join(self.name(member));
         self.docking(member, folder, console)
     }
 
     /// Plans a member's run into a folder.
-    fn docking(
-        &self,
-        member: Member,
-        folder: PathBuf,
-        console: Console,
-    ) -> Result<Docking, Failure> {
+    fn docking(&self, member: Member, folder: PathBuf, console: Console) -> Result<Docking, Error> {
         let specs = self.laid(member).map(|laid| laid.spec.clone());
         let bodies = Bodies::of(specs, &self.given.options)?;
         let request = Request::of(bodies, self.native.clone(), self.given.clone());
@@ -125,7 +120,7 @@ impl Ensemble {
     }
 
     /// Plans the first member and says what is done, then the largest; the seconds that all are expected to take.
-    fn foresee(&self, console: Console) -> Result<f64, Failure> {
+    fn foresee(&self, console: Console) -> Result<f64, Error> {
         let first = self.planned(Member([0, 0]), console)?;
         let largest = Member(self.laid.sides.each_ref().map(|side| largest(side)));
         let bytes = match largest.0 {
@@ -174,7 +169,7 @@ impl Ensemble {
     }
 
     /// Docks the members that are not there yet, and writes what they come to; the JSON object of that.
-    pub fn run(self, console: Console, notices: Console) -> Result<Value, Failure> {
+    pub fn run(self, console: Console, notices: Console) -> Result<Value, Error> {
         let place = Place::open(&self.directory, self.force)?;
         warn_leftovers(place.leftovers(), notices);
         let members = self.members();
@@ -213,7 +208,7 @@ impl Ensemble {
         member: Member,
         folder: &Path,
         (silent, notices): (Console, Console),
-    ) -> Result<bool, Failure> {
+    ) -> Result<bool, Error> {
         let docking = self.docking(member, folder.to_owned(), silent)?;
         if docking.is_done() {
             return Ok(false);

@@ -24,7 +24,7 @@ use crate::ensemble::place::Place;
 use crate::ensemble::run::Ensemble;
 use crate::inputs::bodies::Bodies;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 impl Ensemble {
     /// Writes the joint table, complexes and the record, and reports them; the JSON object. `docked` are the members,
@@ -35,7 +35,7 @@ impl Ensemble {
         (docked, poses, kept): (&[DockedMember], u64, usize),
         place: Place,
         console: Console,
-    ) -> Result<Value, Failure> {
+    ) -> Result<Value, Error> {
         let staging = place.stage();
         staging.write("poses.csv", |file| joint.table.write_to(file))?;
         let viewed = self.write_top(joint, &staging.folder().join("top"))?;
@@ -46,7 +46,7 @@ impl Ensemble {
             poses,
         };
         let record = self.record(docked, results, staging, kept)?;
-        let record = serde_json::to_value(&record).map_err(Failure::other)?;
+        let record = serde_json::to_value(&record).map_err(Error::machine)?;
         staging.write(RECORD, |file| to_json(file, &record))?;
         if !self.given.options.output.no_report {
             let name = self.directory.display().to_string();
@@ -69,7 +69,7 @@ impl Ensemble {
     }
 
     /// Writes the complexes of the first ranks, each of its member's conformations, in the order of the ranks.
-    fn write_top(&self, joint: &JointTable, folder: &Path) -> Result<Vec<ViewedComplex>, Failure> {
+    fn write_top(&self, joint: &JointTable, folder: &Path) -> Result<Vec<ViewedComplex>, Error> {
         let rows = joint.table.rows();
         let count = self.given.options.output.write_top.min(rows.len());
         let mut viewed = Vec::new();
@@ -97,7 +97,7 @@ impl Ensemble {
         results: EnsembleResults,
         staging: &Stage,
         members_kept: usize,
-    ) -> Result<EnsembleRecord<'a>, Failure> {
+    ) -> Result<EnsembleRecord<'a>, Error> {
         let member = |docked: &DockedMember| {
             let best = docked
                 .table

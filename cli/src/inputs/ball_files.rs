@@ -7,7 +7,7 @@ use knotdock::output::records::input_record::InputRecord;
 use knotdock_structures::ball_file::{self, BallFile};
 use knotdock_structures::molecule::InputSpec;
 
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// A file of balls as read.
 pub struct BallFileInput {
@@ -19,11 +19,11 @@ pub struct BallFileInput {
 
 impl BallFileInput {
     /// Reads the balls of a file; of one with links those of the link that stands in the place of a chain.
-    pub fn read(spec: &InputSpec) -> Result<Self, Failure> {
+    pub fn read(spec: &InputSpec) -> Result<Self, Error> {
         let bytes = read_bounded(&spec.path, MAX_TABLE).map_err(|error| {
-            Failure::input(format!("cannot read the balls: {error}"))
+            Error::input(format!("cannot read the balls: {error}"))
                 .at(&spec.path)
-                .remedy("check the name, the permissions and the size of the file")
+                .help("check the name, the permissions and the size of the file")
         })?;
         let link = spec.chains.as_ref().and_then(|chains| chains.first());
         Ok(Self {

@@ -1,11 +1,11 @@
 //! The two bodies of a run: molecules or meshes, and what differs between them.
 
+use knotdock::dock::scene::ring_axis;
 use std::path::Path;
 use std::sync::Arc;
 
 use crate::report::{ReportBodies, RunContacts};
 use knotdock::dock::pair::{GivenLengths, Pair, PreparedPair, Sampling, sampled_defaults};
-use knotdock::error::SearchError;
 use knotdock::mesh::{MeshOptions, MeshPair, MeshSceneError};
 use knotdock::options::DockOptions;
 use knotdock::output::files::assemblies::write_assemblies;
@@ -14,6 +14,7 @@ use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{ChainMap, Format, InputSpec};
 use knotdock_structures::sampling::weights::FittedWeights;
 
@@ -23,8 +24,6 @@ use crate::inputs::room::{room_to_read, room_to_sample};
 use crate::inputs::shapes::{ShapeInput, is_shape};
 use crate::inputs::traces::refuse_traces;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
-use crate::messages::library_errors::refused;
 
 /// The bodies as read.
 pub enum Bodies {
@@ -47,7 +46,7 @@ const SIDES: [&str; 2] = ["Receptor", "Ligand"];
 
 impl Bodies {
     /// Reads two bodies of one kind as the command line names them.
-    pub fn read(receptor: &str, ligand: &str, options: &DockOptions) -> Result<Self, Failure> {
+    pub fn read(receptor: &str, ligand: &str, options: &DockOptions) -> Result<Self, Error> {
         Self::of([spec_of(receptor)?, spec_of(ligand)?], options)
     }
 
@@ -61,7 +60,7 @@ impl Bodies {
         records: [&InputRecord; 2],
         run: &Path,
         options: &DockOptions,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         let folders = folders_of(run);
         let [receptor, ligand] = records;
         let specs = [
@@ -72,7 +71,7 @@ impl Bodies {
     }
 
     /// Reads two bodies of one kind that can be docked.
-    pub fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
+    pub fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Error> {
         let bodies = Self::whatever(specs, options)?;
         if let Self::Molecules(inputs) = &bodies {
             refuse_traces(["receptor", "ligand"].into_iter().zip(inputs.as_ref()))?;
@@ -81,7 +80,7 @@ impl Bodies {
     }
 
     /// Reads two bodies of one kind, of an earlier run what it docked.
-    fn whatever(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Failure> {
+    fn whatever(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Error> {
         let [receptor, ligand] = &specs;
         let are_meshes = [receptor, ligand].map(|spec| is_shape(&spec.path));
         if are_meshes[0] == are_meshes[1] {
@@ -103,12 +102,12 @@ impl Bodies {
                 } else {
                     (ligand, receptor)
                 };
-                Err(Failure::input(format!(
+                Err(Error::input(format!(
                     "a mesh cannot be docked with a molecule, {}",
                     other.path.display()
                 ))
                 .at(&mesh.path)
-                .remedy("dock two meshes in one unit of length, or two molecules"))
+                .help("dock two meshes in one unit of length, or two molecules"))
             }
         }
     }
@@ -143,22 +142,21 @@ impl Bodies {
         offset: Option<f64>,
         given: GivenLengths,
         console: Console,
-    ) -> Result<PreparedPair, Failure> {
+    ) -> Result<PreparedPair, Error> {
         match self {
             Self::Molecules(inputs) => {
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
-                PreparedPair::molecules(molecules, options).map_err(|error| match error {
-                    SearchError::Ring { .. } => refused(error).at(&inputs[0].record.path),
-                    error => refused(error),
-                })
+                ring_axis(molecules[0], options)
+                    .map_err(|error| error.at(&inputs[0].record.path))?;
+                PreparedPair::molecules(molecules, options)
             }
-            Self::Meshes(_) if options.search.symmetry.is_some() => Err(Failure::input(
+            Self::Meshes(_) if options.search.symmetry.is_some() => Err(Error::input(
                 "--symmetry needs a molecule, and this is a mesh",
             )
-            .remedy("dock two meshes, without --symmetry")),
+            .help("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
                 let sampling = sampled(inputs, options, (offset, given), console)?;
-                PreparedPair::meshes(Arc::new(sampling), options).map_err(refused)
+                PreparedPair::meshes(Arc::new(sampling), options)
             }
         }
     }
@@ -169,7 +167,7 @@ impl Bodies {
         options: &mut DockOptions,
         (offset, given): (Option<f64>, GivenLengths),
         console: Console,
-    ) -> Result<Option<Sampling>, Failure> {
+    ) -> Result<Option<Sampling>, Error> {
         match self {
             Self::Molecules(_) => Ok(None),
             Self::Meshes(inputs) => sampled(inputs, options, (offset, given), console).map(Some),
@@ -193,7 +191,7 @@ impl Bodies {
         rows: &[PoseRow],
         arrangement: Arrangement,
         (folder, format): (&Path, Option<Format>),
-    ) -> Result<WrittenBodies, Failure> {
+    ) -> Result<WrittenBodies, Error> {
         match self {
             Self::Molecules(inputs) => {
                 let molecules = inputs.each_ref().map(|input| &input.molecule);
@@ -243,7 +241,7 @@ impl Bodies {
     }
 
     /// Receptor and ligand for run.json.
-    pub fn entries(&self, sampling: Option<&Sampling>) -> Result<[InputEntry; 2], Failure> {
+    pub fn entries(&self, sampling: Option<&Sampling>) -> Result<[InputEntry; 2], Error> {
         let [receptor, ligand] = match self {
             Self::Molecules(inputs) => inputs.each_ref().map(Input::entry),
             Self::Meshes(inputs) => {
@@ -271,7 +269,7 @@ impl Bodies {
 }
 
 /// What a text names: of a file of balls, a link may stand behind a colon.
-pub fn spec_of(text: &str) -> Result<InputSpec, Failure> {
+pub fn spec_of(text: &str) -> Result<InputSpec, Error> {
     match ball_file_of(text) {
         Some(spec) => Ok(spec),
         None => Ok(InputSpec::parse(text)?),
@@ -293,7 +291,7 @@ fn say_read(what: &str, input: &Input, console: Console) {
 /// Refuses the first option that is given and has no effect on such bodies: what was meant by it would not happen. An
 /// option at its default is no different from one that is not given. Weights of effects that are off are not refused:
 /// they say what the effect would weigh.
-fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), Failure> {
+fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), Error> {
     let Some(option) = options.without_effect(are_meshes) else {
         return Ok(());
     };
@@ -305,7 +303,7 @@ fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), 
         ("meshes", "molecules", remedy)
     };
     let long = option.long();
-    Err(Failure::input(format!("--{long} is for {of}, and these are {these}")).remedy(remedy))
+    Err(Error::input(format!("--{long} is for {of}, and these are {these}")).help(remedy))
 }
 
 /// Meshes as balls. Options that follow from them are filled in, and what was made is said.
@@ -314,7 +312,7 @@ fn sampled(
     options: &mut DockOptions,
     (offset, given): (Option<f64>, GivenLengths),
     console: Console,
-) -> Result<Sampling, Failure> {
+) -> Result<Sampling, Error> {
     let sampler = *options.sampling.sampler.get_or_insert_default();
     if !given.alpha {
         options.kernel.alpha = sampler.sampler().alpha;
@@ -332,7 +330,7 @@ fn sampled(
     };
     room_to_sample(sampling.per_axis, options.machine.memory)?;
     let solids = inputs.each_ref().map(ShapeInput::shape);
-    let sampling = Sampling::of(solids, &sampling).map_err(|error| mesh_failure(&error, inputs))?;
+    let sampling = Sampling::of(solids, &sampling).map_err(|error| mesh_failure(error, inputs))?;
     sampled_defaults(&sampling.pair, options, given);
     console.say(match console.verbose {
         true => sampling_text(&sampling.pair),
@@ -341,12 +339,11 @@ fn sampled(
     Ok(sampling)
 }
 
-/// A failure that names the mesh at fault.
-fn mesh_failure(error: &MeshSceneError, inputs: &[ShapeInput; 2]) -> Failure {
-    let failure = Failure::input(error).remedy(error.remedy());
-    match error.part() {
-        Some(part) => failure.at(&inputs[part].record().path),
-        None => failure,
+/// An error that names the mesh at fault.
+fn mesh_failure(error: MeshSceneError, inputs: &[ShapeInput; 2]) -> Error {
+    match error.part {
+        Some(part) => error.error.at(&inputs[part].record().path),
+        None => error.error,
     }
 }
 

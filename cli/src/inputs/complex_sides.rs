@@ -1,5 +1,6 @@
 //! The two sides of a complex file: as named, as knotdock wrote them, or the two chains that there are.
 
+use crate::messages::failure;
 use std::path::{Path, PathBuf};
 
 use knotdock_structures::molecule::{
@@ -9,7 +10,7 @@ use knotdock_structures::molecule::{
 use rayon::prelude::*;
 
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// A model of a complex file as two molecules where they stand.
 pub struct ComplexSides {
@@ -27,12 +28,12 @@ impl ComplexSides {
     /// Reads a model of a file, with the chains of both sides or without.
     ///
     /// # Errors
-    /// [`Failure`] for a file that cannot be read, and for one that does not say which chains belong together.
+    /// [`Error`] for a file that cannot be read, and for one that does not say which chains belong together.
     fn read(
         file: &ModelOfFile,
         chains: Option<&[String; 2]>,
         options: &ReadOptions,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         let whole = InputSpec {
             model: file.one_of_several.then_some(file.model),
             ..InputSpec::whole(file.path)
@@ -44,7 +45,7 @@ impl ComplexSides {
                 None => two_chains(&whole, file.bytes.to_vec(), options)?,
             },
         };
-        let side = |names: &String| -> Result<Molecule, Failure> {
+        let side = |names: &String| -> Result<Molecule, Error> {
             let spec = InputSpec {
                 chains: Some(names.split(',').map(str::to_owned).collect()),
                 ..whole.clone()
@@ -92,7 +93,7 @@ struct ModelFile {
 
 impl ModelFile {
     /// Reads a file. Of several models every one counts, unless the options of reading choose.
-    fn read(file: &str, options: &ReadOptions) -> Result<Self, Failure> {
+    fn read(file: &str, options: &ReadOptions) -> Result<Self, Error> {
         let path = PathBuf::from(file);
         let bytes = file_bytes(&path)?;
         let models = match options.model {
@@ -113,11 +114,11 @@ impl ModelFile {
 /// The files that words name, and the chains of both sides where they stand behind them.
 ///
 /// # Errors
-/// [`Failure`] where the words name no file, or the chains of one side or of more than two.
+/// [`Error`] where the words name no file, or the chains of one side or of more than two.
 pub fn files_and_chains<'a>(
     words: &'a [String],
     command: &str,
-) -> Result<(&'a [String], Option<[String; 2]>), Failure> {
+) -> Result<(&'a [String], Option<[String; 2]>), Error> {
     let last = words.iter().rev();
     let named = last.take_while(|word| is_chains(word)).count();
     let (files, chains) = words.split_at(words.len() - named);
@@ -129,17 +130,17 @@ pub fn files_and_chains<'a>(
                 1 => "one side".to_owned(),
                 count => format!("{count} sides"),
             };
-            return Err(Failure::input(format!(
+            return Err(Error::input(format!(
                 "chains of {sides} are given, and a complex has two sides"
             ))
-            .remedy(format!(
+            .help(format!(
                 "name the chains of both sides behind the files, as in `knotdock {command} x.pdb H,L A`"
             )));
         }
     };
     if files.is_empty() {
-        return Err(Failure::input("no complex is given")
-            .remedy("give a file; its name needs a point or a folder, as in ./complex"));
+        return Err(Error::input("no complex is given")
+            .help("give a file; its name needs a point or a folder, as in ./complex"));
     }
     Ok((files, chains))
 }
@@ -148,14 +149,14 @@ pub fn files_and_chains<'a>(
 /// of which nothing can be made is reported and costs no other.
 ///
 /// # Errors
-/// The [`Failure`] of a model that is the only one.
+/// The [`Error`] of a model that is the only one.
 pub fn for_each_model<T: Send>(
     (files, chains): (&[String], Option<&[String; 2]>),
     options: &ReadOptions,
     console: Console,
-    make: impl Fn(&str, ComplexSides) -> Result<T, Failure> + Sync,
-) -> Result<(Vec<T>, u8), Failure> {
-    type Made<T> = (Vec<String>, Result<T, Failure>);
+    make: impl Fn(&str, ComplexSides) -> Result<T, Error> + Sync,
+) -> Result<(Vec<T>, u8), Error> {
+    type Made<T> = (Vec<String>, Result<T, Error>);
     let of_model = |name: &str, file: &ModelFile, model: usize| -> Made<T> {
         let one_of_several = file.models.len() > 1;
         let place = ModelOfFile {
@@ -169,7 +170,7 @@ pub fn for_each_model<T: Send>(
             Err(failure) => (Vec::new(), Err(failure)),
         };
         let made = made.map_err(|failure| match one_of_several {
-            true => failure.in_model(model),
+            true => failure.within(format!("model {model}")),
             false => failure,
         });
         (warnings, made)
@@ -197,7 +198,7 @@ pub fn for_each_model<T: Send>(
             Ok(row) => rows.push(row),
             Err(failure) if is_only => return Err(failure),
             Err(failure) => {
-                console.error(failure.text());
+                console.error(failure::text(&failure));
                 code = code.max(failure.exit_code());
             }
         }
@@ -237,7 +238,7 @@ fn two_chains(
     whole: &InputSpec,
     bytes: Vec<u8>,
     options: &ReadOptions,
-) -> Result<[String; 2], Failure> {
+) -> Result<[String; 2], Error> {
     let molecule = read_bytes(whole, bytes, options)?;
     let chains = molecule.report.chains.iter();
     let names: Vec<String> = chains
@@ -247,12 +248,12 @@ fn two_chains(
         })
         .collect();
     <[String; 2]>::try_from(names).map_err(|names| {
-        Failure::input(format!(
+        Error::input(format!(
             "it is not known which chains belong together; the file has {}",
             names.join(", ")
         ))
         .at(&whole.path)
-        .remedy("name the chains of both sides behind the files, as in `knotdock interface x.pdb H,L A`")
+        .help("name the chains of both sides behind the files, as in `knotdock interface x.pdb H,L A`")
     })
 }
 

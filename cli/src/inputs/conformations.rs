@@ -7,7 +7,7 @@ use knotdock_structures::molecule::{InputSpec, file_bytes, model_count};
 
 use crate::arguments::conformations::ModelList;
 use crate::inputs::shapes::is_shape;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// One conformation of a side.
 #[derive(Clone, Debug)]
@@ -21,12 +21,12 @@ pub struct Conformation {
 /// The conformations of a side, the first one first: each file, and of it the models that are listed.
 ///
 /// # Errors
-/// [`Failure`] for what is no molecule, cannot be read twice, lacks a model, or is named twice.
+/// [`Error`] for what is no molecule, cannot be read twice, lacks a model, or is named twice.
 pub fn conformations(
     first: &str,
     also: &[String],
     models: Option<&ModelList>,
-) -> Result<Vec<Conformation>, Failure> {
+) -> Result<Vec<Conformation>, Error> {
     let mut found: Vec<Conformation> = Vec::new();
     let mut seen = HashSet::new();
     let files = std::iter::once(first).chain(also.iter().map(String::as_str));
@@ -48,9 +48,9 @@ pub fn conformations(
                 .canonicalize()
                 .unwrap_or_else(|_| spec.path.clone());
             if !seen.insert((path, spec.chains.clone(), model)) {
-                return Err(Failure::input("the same conformation is named twice")
+                return Err(Error::input("the same conformation is named twice")
                     .at(&spec.path)
-                    .remedy("name each conformation once"));
+                    .help("name each conformation once"));
             }
             found.push(Conformation { name, spec });
         }
@@ -59,26 +59,26 @@ pub fn conformations(
 }
 
 /// Refuses what is no molecule, and what can be read but once.
-fn check(spec: &InputSpec) -> Result<(), Failure> {
+fn check(spec: &InputSpec) -> Result<(), Error> {
     if is_shape(&spec.path) {
-        return Err(Failure::input(
-            "only molecules can be docked as ensembles, and this is a mesh",
-        )
-        .at(&spec.path)
-        .remedy("dock two meshes without --receptor-models, --receptor-also and their like"));
+        return Err(
+            Error::input("only molecules can be docked as ensembles, and this is a mesh")
+                .at(&spec.path)
+                .help("dock two meshes without --receptor-models, --receptor-also and their like"),
+        );
     }
     if is_stream(&spec.path) && !spec.path.is_dir() {
-        return Err(Failure::input(
+        return Err(Error::input(
             "a pipe can be read once, and an ensemble reads its files several times",
         )
         .at(&spec.path)
-        .remedy("give a file"));
+        .help("give a file"));
     }
     Ok(())
 }
 
 /// The models of a file that are docked; `None` stands for what is read of it by default.
-fn chosen(spec: &InputSpec, models: Option<&ModelList>) -> Result<Vec<Option<usize>>, Failure> {
+fn chosen(spec: &InputSpec, models: Option<&ModelList>) -> Result<Vec<Option<usize>>, Error> {
     let Some(models) = models else {
         return Ok(vec![None]);
     };
@@ -87,11 +87,11 @@ fn chosen(spec: &InputSpec, models: Option<&ModelList>) -> Result<Vec<Option<usi
         ModelList::All if count == 1 => Ok(vec![None]),
         ModelList::All => Ok((1..=count).map(Some).collect()),
         ModelList::These(numbers) => match numbers.iter().find(|&&number| number > count) {
-            Some(number) => Err(Failure::input(format!(
+            Some(number) => Err(Error::input(format!(
                 "there is no model {number}; the file has {count}"
             ))
             .at(&spec.path)
-            .remedy("list models that the file has, which count from 1 in its order, or give all")),
+            .help("list models that the file has, which count from 1 in its order, or give all")),
             None => Ok(numbers.iter().copied().map(Some).collect()),
         },
     }

@@ -8,7 +8,7 @@ use knotdock::output::records::manifest::InputEntry;
 use knotdock_structures::mesh::{self, Mesh, MeshReport, Solid};
 use knotdock_structures::molecule::InputSpec;
 
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Endings of mesh files.
 const ENDINGS: [&str; 4] = ["stl", "obj", "ply", "off"];
@@ -35,15 +35,15 @@ pub struct MeshInput {
 
 impl MeshInput {
     /// Reads a mesh; chains cannot be picked of one.
-    pub fn read(spec: &InputSpec) -> Result<Self, Failure> {
+    pub fn read(spec: &InputSpec) -> Result<Self, Error> {
         if spec.chains.is_some() {
-            return Err(Failure::input("a mesh has no chains to pick")
+            return Err(Error::input("a mesh has no chains to pick")
                 .at(&spec.path)
-                .remedy("leave out the colon and what follows it"));
+                .help("leave out the colon and what follows it"));
         }
         let bytes = mesh::file_bytes(&spec.path)?;
         let (mesh, report) = mesh::read_bytes(&spec.path, &bytes)?;
-        let solid = Solid::new(&mesh).map_err(|error| Failure::input(error).at(&spec.path))?;
+        let solid = Solid::new(&mesh).map_err(|error| Error::input(error).at(&spec.path))?;
         Ok(Self {
             record: InputRecord::new(spec, &bytes),
             mesh,
@@ -53,12 +53,12 @@ impl MeshInput {
     }
 
     /// The mesh for run.json, with how it was sampled.
-    pub fn entry(&self, sampling: Option<&SampledPart>) -> Result<InputEntry, Failure> {
+    pub fn entry(&self, sampling: Option<&SampledPart>) -> Result<InputEntry, Error> {
         Ok(InputEntry {
             record: self.record.clone(),
             atoms: None,
             sampling: sampling.cloned(),
-            report: serde_json::to_value(&self.report).map_err(Failure::other)?,
+            report: serde_json::to_value(&self.report).map_err(Error::machine)?,
         })
     }
 }

@@ -13,7 +13,7 @@ use knotdock_structures::molecule::{
 
 use crate::inputs::meshes::is_mesh;
 use crate::inputs::recent_molecules::read_recent;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// The folder of a run.json and the one above it, in which inputs are looked for that are no longer where they were; of
 /// a member of an ensemble those of the ensemble as well.
@@ -41,7 +41,7 @@ pub struct Input {
 
 impl Input {
     /// Reads `FILE` or `FILE:H,L`.
-    pub fn read(text: &str, options: &ReadOptions) -> Result<Self, Failure> {
+    pub fn read(text: &str, options: &ReadOptions) -> Result<Self, Error> {
         let spec = InputSpec::parse(text)?;
         refuse_mesh(&spec)?;
         Self::of(&spec, options)
@@ -53,14 +53,14 @@ impl Input {
         record: &InputRecord,
         run: &Path,
         options: &ReadOptions,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         let spec = record.locate(&folders_of(run))?.spec();
         refuse_mesh(&spec)?;
         Self::of(&spec, options)
     }
 
     /// Reads what a specification names.
-    pub fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Failure> {
+    pub fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Error> {
         // Read once: what is recorded is what was read, of a pipe, too.
         let bytes = file_bytes(&spec.path)?;
         Ok(Self {
@@ -74,7 +74,7 @@ impl Input {
     pub fn read_with_fates(
         text: &str,
         options: &ReadOptions,
-    ) -> Result<(Self, Vec<AtomFate>), Failure> {
+    ) -> Result<(Self, Vec<AtomFate>), Error> {
         let spec = InputSpec::parse(text)?;
         refuse_mesh(&spec)?;
         let bytes = file_bytes(&spec.path)?;
@@ -92,7 +92,7 @@ impl Input {
     pub fn read_all<const N: usize>(
         texts: [&str; N],
         options: &ReadOptions,
-    ) -> Result<[Self; N], Failure> {
+    ) -> Result<[Self; N], Error> {
         let specs = texts.into_iter().map(InputSpec::parse);
         Self::all(&specs.collect::<Result<Vec<_>, _>>()?, options)
     }
@@ -102,12 +102,12 @@ impl Input {
         records: [&InputRecord; N],
         run: &Path,
         options: &ReadOptions,
-    ) -> Result<[Self; N], Failure> {
+    ) -> Result<[Self; N], Error> {
         let folders = folders_of(run);
         let specs = records
             .into_iter()
             .map(|record| Ok(record.locate(&folders)?.spec()));
-        Self::all(&specs.collect::<Result<Vec<_>, Failure>>()?, options)
+        Self::all(&specs.collect::<Result<Vec<_>, Error>>()?, options)
     }
 
     /// Reads the structures that are docked together. `--min-plddt` holds for those of them that are known as
@@ -118,7 +118,7 @@ impl Input {
     pub fn all<const N: usize>(
         specs: &[InputSpec],
         options: &ReadOptions,
-    ) -> Result<[Self; N], Failure> {
+    ) -> Result<[Self; N], Error> {
         let mut files: Vec<(&InputSpec, Vec<u8>)> = Vec::new();
         for spec in specs {
             refuse_mesh(spec)?;
@@ -130,7 +130,7 @@ impl Input {
             };
             files.push((spec, bytes));
         }
-        let read = |options: &ReadOptions| -> Result<Vec<Self>, Failure> {
+        let read = |options: &ReadOptions| -> Result<Vec<Self>, Error> {
             let inputs = files.iter().map(|(spec, bytes)| {
                 let record = InputRecord::new(spec, bytes);
                 let molecule = read_recent((spec, &record), bytes, options)?;
@@ -149,12 +149,12 @@ impl Input {
         check_used(options, inputs.iter().map(|input| &input.molecule))?;
         inputs
             .try_into()
-            .map_err(|_| Failure::other("structures were lost on reading"))
+            .map_err(|_| Error::machine("structures were lost on reading"))
     }
 
     /// The structure for run.json.
-    pub fn entry(&self) -> Result<InputEntry, Failure> {
-        let mut report = serde_json::to_value(&self.molecule.report).map_err(Failure::other)?;
+    pub fn entry(&self) -> Result<InputEntry, Error> {
+        let mut report = serde_json::to_value(&self.molecule.report).map_err(Error::machine)?;
         if let Some(report) = report.as_object_mut() {
             // The record has the path, and absolute: the one typed would differ when --rerun repeats the run.
             report.remove("file");
@@ -175,7 +175,7 @@ impl Input {
 fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     let (mut predicted, mut built, mut several) = (false, false, false);
     let (mut left_out, mut kept) = (BTreeSet::new(), BTreeSet::new());
     let mut reasons = Vec::new();
@@ -203,10 +203,10 @@ fn check_used<'a>(
         .find(|name| !left_out.contains(name.as_str()))
     {
         let kept: Vec<&str> = kept.into_iter().collect();
-        return Err(Failure::input(format!(
+        return Err(Error::input(format!(
             "--drop-residue names {name}, and no residue read here has that name"
         ))
-        .remedy(match kept.join(", ") {
+        .help(match kept.join(", ") {
             none if none.is_empty() => {
                 "leave it out: all residues here are standard amino acids".to_owned()
             }
@@ -216,39 +216,39 @@ fn check_used<'a>(
         }));
     }
     if options.min_plddt.is_some() && !predicted {
-        return Err(Failure::input(format!(
+        return Err(Error::input(format!(
             "--min-plddt is for predicted models, and no B values here can be pLDDT: {}",
             reasons.join("; ")
         ))
-        .remedy(
+        .help(
             "leave it out, or give the file as the predictor wrote it, with pLDDT from 0 to 100 or from 0 to 1 in the place of B values; \
              mmCIF names it in `_ma_qa_metric`",
         ));
     }
     if options.assembly.is_some() && !built {
-        return Err(Failure::input(
+        return Err(Error::input(
             "--assembly is for files that describe their biological assemblies, and none does here",
         )
-        .remedy(
+        .help(
             "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in \
              _pdbx_struct_assembly_gen (mmCIF)",
         ));
     }
     if options.model != ModelChoice::default() && !several {
-        return Err(Failure::input(format!(
+        return Err(Error::input(format!(
             "--model {} is for files of several models, and these have one",
             options.model
         ))
-        .remedy("leave it out: the one model of a file is read"));
+        .help("leave it out: the one model of a file is read"));
     }
     Ok(())
 }
 
-fn refuse_mesh(spec: &InputSpec) -> Result<(), Failure> {
+fn refuse_mesh(spec: &InputSpec) -> Result<(), Error> {
     if is_mesh(&spec.path) {
-        return Err(Failure::input("this is a mesh, where a molecule is needed")
+        return Err(Error::input("this is a mesh, where a molecule is needed")
             .at(&spec.path)
-            .remedy("give a .pdb, .ent or .cif file; meshes are for `knotdock dock` and `knotdock sample`"));
+            .help("give a .pdb, .ent or .cif file; meshes are for `knotdock dock` and `knotdock sample`"));
     }
     Ok(())
 }

@@ -14,7 +14,7 @@ use rayon::prelude::*;
 
 use crate::inputs::molecules::Input;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Options that name the known complex.
 #[derive(Args, Clone, Debug)]
@@ -52,7 +52,7 @@ pub enum NativeFiles {
 
 impl NativeArguments {
     /// Reads the files that are named, if any.
-    pub fn read(&self) -> Result<Option<NativeFiles>, Failure> {
+    pub fn read(&self) -> Result<Option<NativeFiles>, Error> {
         let by_default = ReadOptions::default();
         match (&self.native, &self.native_receptor, &self.native_ligand) {
             (Some(complex), _, _) => Ok(Some(NativeFiles::Complex(Box::new(Input::read(
@@ -70,7 +70,7 @@ impl NativeArguments {
 
 impl NativeFiles {
     /// Reads the files that a run recorded.
-    pub fn recorded(record: &NativeRecord, run: &Path) -> Result<Self, Failure> {
+    pub fn recorded(record: &NativeRecord, run: &Path) -> Result<Self, Error> {
         let by_default = ReadOptions::default();
         Ok(match record {
             NativeRecord::Complex(complex) => {
@@ -107,7 +107,7 @@ impl NativeFiles {
     }
 
     /// Matches the complex with the molecules docked.
-    pub fn evaluator(&self, receptor: &Molecule, ligand: &Molecule) -> Result<Evaluator, Failure> {
+    pub fn evaluator(&self, receptor: &Molecule, ligand: &Molecule) -> Result<Evaluator, Error> {
         self.evaluator_by(receptor, ligand, &ChainChoice::default())
     }
 
@@ -117,7 +117,7 @@ impl NativeFiles {
         receptor: &Molecule,
         ligand: &Molecule,
         choice: &ChainChoice,
-    ) -> Result<Evaluator, Failure> {
+    ) -> Result<Evaluator, Error> {
         let choice = ChainChoice {
             named: choice.named || self.inputs().any(|input| input.record.chains.is_some()),
             ..choice.clone()
@@ -140,9 +140,9 @@ impl NativeFiles {
             for note in self.notes() {
                 message += &format!("; {note}");
             }
-            Failure::input(message)
+            Error::input(message)
                 .at(&file.record.path)
-                .remedy(error.remedy())
+                .help(error.remedy())
         })
     }
 

@@ -6,10 +6,10 @@ use std::path::Path;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 
 use crate::arguments::ranks::Ranks;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// The rows of some ranks of the table at a path, in the order of the ranks.
-pub fn ranked_rows(table_path: &Path, ranks: &Ranks) -> Result<Vec<PoseRow>, Failure> {
+pub fn ranked_rows(table_path: &Path, ranks: &Ranks) -> Result<Vec<PoseRow>, Error> {
     let table = PoseTable::read(table_path)?;
     let places = ranked_places(&table, table_path, ranks)?;
     Ok(places
@@ -23,17 +23,17 @@ pub fn ranked_places(
     table: &PoseTable,
     table_path: &Path,
     ranks: &Ranks,
-) -> Result<Vec<usize>, Failure> {
+) -> Result<Vec<usize>, Error> {
     let rows = table.rows().iter().enumerate();
     let of_rank: HashMap<usize, usize> = rows.map(|(place, row)| (row.rank, place)).collect();
     let places = ranks.0.iter().map(|rank| {
         of_rank.get(rank).copied().ok_or_else(|| {
-            Failure::input(format!(
+            Error::input(format!(
                 "there is no rank {rank} among the {} rows",
                 table.rows().len()
             ))
             .at(table_path)
-            .remedy(
+            .help(
                 "choose ranks that the table lists; `knotdock dock --no-cluster` lists every pose",
             )
         })

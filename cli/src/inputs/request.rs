@@ -16,7 +16,7 @@ use crate::arguments::options::GivenOptions;
 use crate::inputs::bodies::Bodies;
 use crate::inputs::native::{NativeFiles, announce};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// The offset, where it is given, and which further options are that follow from the meshes.
 pub fn lengths(given: &GivenOptions) -> (Option<f64>, GivenLengths) {
@@ -47,10 +47,10 @@ impl Known {
     }
 
     /// The report on the match as JSON, or why there is none.
-    pub fn entry(&self) -> Result<Value, Failure> {
+    pub fn entry(&self) -> Result<Value, Error> {
         match self {
             Self::Matched(evaluator) => {
-                serde_json::to_value(evaluator.report()).map_err(Failure::other)
+                serde_json::to_value(evaluator.report()).map_err(Error::machine)
             }
             Self::Unmatched(error) => Ok(json!({ "error": error })),
         }
@@ -79,7 +79,7 @@ impl Request {
         [receptor, ligand]: [&String; 2],
         native: Option<NativeFiles>,
         given: GivenOptions,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         let bodies = Bodies::read(receptor, ligand, &given.options)?;
         Ok(Self::of(bodies, native, given))
     }
@@ -92,17 +92,13 @@ impl Request {
             native,
             offset,
             given: lengths,
-            is_angle: given.by_angle || !given.has("rotations"),
+            is_angle: given.by_angle() || !given.has("rotations"),
             options: given.options,
         }
     }
 
     /// The request of an earlier run, from its run.json, on this machine.
-    pub fn recorded(
-        path: &Path,
-        machine: MachineOptions,
-        console: Console,
-    ) -> Result<Self, Failure> {
+    pub fn recorded(path: &Path, machine: MachineOptions, console: Console) -> Result<Self, Error> {
         if let Some(directory) = path.parent() {
             put_back(directory)?;
         }
@@ -140,14 +136,14 @@ impl Request {
     }
 
     /// Plans the run; of meshes, options that follow from them are filled in.
-    pub fn plan(&mut self, console: Console) -> Result<PreparedPair, Failure> {
+    pub fn plan(&mut self, console: Console) -> Result<PreparedPair, Error> {
         let (offset, given) = (self.offset, self.given);
         self.bodies.plan(&mut self.options, offset, given, console)
     }
 
     /// Matches the known complex, if there is one, with the molecules. One that does not match costs a warning, not the
     /// docking.
-    pub fn known(&self, console: Console) -> Result<Option<Known>, Failure> {
+    pub fn known(&self, console: Console) -> Result<Option<Known>, Error> {
         match (&self.native, &self.bodies) {
             (Some(native), Bodies::Molecules(inputs)) => {
                 let [receptor, ligand] = inputs.as_ref();
@@ -161,7 +157,7 @@ impl Request {
                         Err(failure) => {
                             console.warn(format!(
                                 "no pose is measured: {}; {}",
-                                failure.line_of_table(),
+                                failure.in_one_line(),
                                 "`knotdock evaluate` measures the run by another known complex"
                             ));
                             Known::Unmatched(failure.message().to_owned())
@@ -169,16 +165,16 @@ impl Request {
                     },
                 ))
             }
-            (Some(_), Bodies::Meshes(_)) => Err(Failure::input(
+            (Some(_), Bodies::Meshes(_)) => Err(Error::input(
                 "a known complex is for molecules, and these are meshes",
             )
-            .remedy("leave --native, --native-receptor and --native-ligand out")),
+            .help("leave --native, --native-receptor and --native-ligand out")),
             (None, _) => Ok(None),
         }
     }
 
     /// The inputs for run.json, with how meshes were sampled.
-    pub fn inputs(&self, sampling: Option<&Sampling>) -> Result<Inputs, Failure> {
+    pub fn inputs(&self, sampling: Option<&Sampling>) -> Result<Inputs, Error> {
         let [receptor, ligand] = self.bodies.entries(sampling)?;
         Ok(Inputs {
             receptor,

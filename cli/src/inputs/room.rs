@@ -9,7 +9,7 @@ use knotdock::geometry::obstacle::reduce::BYTES_REDUCED;
 use knotdock::memory_size::{as_size, in_words, named};
 use knotdock_structures::molecule::InputSpec;
 
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Reading and sampling may take this many bytes whatever the limit: the whole run is refused after them.
 const ALWAYS: u64 = 256 << 20;
@@ -19,7 +19,7 @@ const BYTE_READ: u64 = 8;
 const NODE_SAMPLED: u64 = 40;
 
 /// Refuses files that memory has no room for.
-pub fn room_to_read(specs: &[InputSpec], allowed: Option<u64>) -> Result<(), Failure> {
+pub fn room_to_read(specs: &[InputSpec], allowed: Option<u64>) -> Result<(), Error> {
     let size = |spec: &InputSpec| {
         let metadata = fs::metadata(&spec.path).ok()?;
         metadata.is_file().then_some(metadata.len())
@@ -34,14 +34,14 @@ pub fn room_to_read(specs: &[InputSpec], allowed: Option<u64>) -> Result<(), Fai
 }
 
 /// Refuses a grid of so many nodes along each axis that memory has no room for.
-pub fn room_to_sample(per_axis: usize, allowed: Option<u64>) -> Result<(), Failure> {
+pub fn room_to_sample(per_axis: usize, allowed: Option<u64>) -> Result<(), Error> {
     let nodes = (per_axis as u64).saturating_pow(3);
     let failure = refused("sampling", NODE_SAMPLED.saturating_mul(nodes), allowed);
     failure.map_or(Ok(()), Err)
 }
 
 /// Refuses so many balls of a sum that memory has no room for, if none lay in another one.
-pub fn room_for_balls(balls: u64, allowed: Option<u64>) -> Result<(), Failure> {
+pub fn room_for_balls(balls: u64, allowed: Option<u64>) -> Result<(), Error> {
     let needed = BYTES_REDUCED.saturating_mul(balls);
     let Some(allowed) = allowed.filter(|&allowed| needed > allowed.max(ALWAYS)) else {
         return Ok(());
@@ -52,13 +52,13 @@ pub fn room_for_balls(balls: u64, allowed: Option<u64>) -> Result<(), Failure> {
         in_words(needed),
         in_words(allowed)
     );
-    Err(Failure::input(error).remedy(format!(
+    Err(Error::input(error).help(format!(
         "use a coarser --grid, or allow at least --memory {least}"
     )))
 }
 
 /// The refusal of work that takes more than is allowed, and more than always is.
-fn refused(work: &str, needed: u64, allowed: Option<u64>) -> Option<Failure> {
+fn refused(work: &str, needed: u64, allowed: Option<u64>) -> Option<Error> {
     let allowed = allowed.filter(|&allowed| needed > allowed.max(ALWAYS))?;
     let least = as_size(named(needed));
     let remedy = match work {
@@ -70,7 +70,7 @@ fn refused(work: &str, needed: u64, allowed: Option<u64>) -> Option<Failure> {
         in_words(needed),
         in_words(allowed)
     );
-    Some(Failure::input(error).remedy(remedy))
+    Some(Error::input(error).help(remedy))
 }
 
 #[cfg(test)]

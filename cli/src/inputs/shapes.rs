@@ -15,7 +15,7 @@ use serde_json::json;
 use crate::inputs::ball_files::BallFileInput;
 use crate::inputs::meshes::{MeshInput, is_mesh};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Whether a file is a mesh or one of balls, by its name.
 pub fn is_shape(path: &Path) -> bool {
@@ -42,7 +42,7 @@ pub struct BallInput {
 
 impl ShapeInput {
     /// Reads a mesh, or the balls of a file; of one with links those of the link behind the colon.
-    pub fn read(spec: &InputSpec) -> Result<Self, Failure> {
+    pub fn read(spec: &InputSpec) -> Result<Self, Error> {
         if is_mesh(&spec.path) {
             return Ok(Self::Mesh(Box::new(MeshInput::read(spec)?)));
         }
@@ -114,7 +114,7 @@ impl ShapeInput {
     }
 
     /// The part for run.json, with how it was sampled.
-    pub fn entry(&self, sampling: Option<&SampledPart>) -> Result<InputEntry, Failure> {
+    pub fn entry(&self, sampling: Option<&SampledPart>) -> Result<InputEntry, Error> {
         match self {
             Self::Mesh(input) => input.entry(sampling),
             Self::Balls(input) => Ok(InputEntry {

@@ -2,8 +2,8 @@
 
 use std::path::Path;
 
+use crate::arguments::options::{OfReading, TypedOptions};
 use clap::Args;
-use knotdock::options::InputOptions;
 use knotdock::options::SampleGrid;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock_structures::Ball;
@@ -18,7 +18,7 @@ use crate::inputs::meshes::{MeshInput, is_mesh};
 use crate::inputs::molecules::Input;
 use crate::inputs::room::{room_to_read, room_to_sample};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Options on solids.
 #[derive(Args, Clone, Debug)]
@@ -29,7 +29,7 @@ pub struct SolidArguments {
     #[arg(long, value_name = "COUNT", default_value = "2^15")]
     pub grid: SampleGrid,
     #[command(flatten)]
-    pub input: InputOptions,
+    pub input: TypedOptions<OfReading>,
 }
 
 /// What kind of file a solid came from.
@@ -62,12 +62,12 @@ impl SolidInput {
     /// that a process may take, in bytes.
     ///
     /// # Errors
-    /// [`Failure`] with file, line and remedy.
+    /// [`Error`] with file, line and remedy.
     pub fn read(
         text: &str,
         arguments: &SolidArguments,
         allowed: Option<u64>,
-    ) -> Result<Self, Failure> {
+    ) -> Result<Self, Error> {
         if let Some(spec) = ball_file_of(text) {
             return Self::of_balls(&spec);
         }
@@ -77,15 +77,15 @@ impl SolidInput {
             room_to_sample(arguments.grid.per_axis, allowed)?;
             return Self::of_mesh(&spec, arguments.grid.per_axis);
         }
-        let input = Input::of(&spec, &arguments.input.reading())?;
+        let input = Input::of(&spec, &arguments.input.options.input.reading())?;
         Self::of_molecule(input.record, &input.molecule)
     }
 
-    fn of_balls(spec: &InputSpec) -> Result<Self, Failure> {
+    fn of_balls(spec: &InputSpec) -> Result<Self, Error> {
         let input = BallFileInput::read(spec)?;
         let file = &input.file;
         let solid = BallSolid::from_balls(&file.balls, file.weights.as_deref())
-            .map_err(|error| Failure::input(error).at(&spec.path))?;
+            .map_err(|error| Error::input(error).at(&spec.path))?;
         Ok(Self {
             kind: SolidKind::Balls,
             report: input.report(),
@@ -96,7 +96,7 @@ impl SolidInput {
         })
     }
 
-    fn of_mesh(spec: &InputSpec, per_axis: usize) -> Result<Self, Failure> {
+    fn of_mesh(spec: &InputSpec, per_axis: usize) -> Result<Self, Error> {
         let MeshInput {
             record,
             report,
@@ -104,9 +104,9 @@ impl SolidInput {
             ..
         } = MeshInput::read(spec)?;
         let (solid, sampling) = BallSolid::from_mesh(&solid, per_axis).map_err(|error| {
-            Failure::input(error).at(&spec.path).remedy(
-                "check that the mesh is closed and one solid, or sample it on a finer --grid",
-            )
+            Error::input(error)
+                .at(&spec.path)
+                .help("check that the mesh is closed and one solid, or sample it on a finer --grid")
         })?;
         let mut warnings = report.warnings();
         if sampling.inward > sampling.grid_epsilon {
@@ -130,8 +130,8 @@ impl SolidInput {
         })
     }
 
-    fn of_molecule(record: InputRecord, molecule: &Molecule) -> Result<Self, Failure> {
-        let refused = |error: KnotsError| Failure::input(error).at(&record.path);
+    fn of_molecule(record: InputRecord, molecule: &Molecule) -> Result<Self, Error> {
+        let refused = |error: KnotsError| Error::input(error).at(&record.path);
         let knots = molecule.knots().map_err(refused)?;
         let balls = knots.centers.iter().zip(&knots.radii);
         let balls: Vec<Ball> = balls

@@ -5,8 +5,8 @@
 use std::collections::BTreeMap;
 
 use crate::inputs::molecules::Input;
-use crate::messages::failure::Failure;
 use knotdock::interface::heavy_residues;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
 /// Most heavy atoms of a residue of a trace; a backbone has four.
@@ -22,19 +22,19 @@ const TRACED: [&str; 7] = ["CA", "CB", "P", "C1'", "C3'", "C4'", "C5'"];
 /// Refuses molecules with a chain that is a trace for the most part; `sides` are their names.
 pub fn refuse_traces<'a>(
     inputs: impl IntoIterator<Item = (&'a str, &'a Input)>,
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     for (side, input) in inputs {
         if let Some(chain) = trace(&input.molecule) {
             let chain = match chain.as_str() {
                 "" => "its chain without a name".to_owned(),
                 name => format!("its chain {name}"),
             };
-            return Err(Failure::input(format!(
+            return Err(Error::input(format!(
                 "the {side} is no all-atom model: of most residues of {chain} the file has one or two atoms, such as CA \
                  alone, and the score is of all heavy atoms"
             ))
             .at(&input.record.path)
-            .remedy(
+            .help(
                 "rebuild the missing atoms first, as PULCHRA and MODELLER do, give an all-atom model, or pick other chains \
                  as in FILE:A,B",
             ));

@@ -6,6 +6,7 @@
 //! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not
 //! written. A disk that is full does not stop one either, but the command fails in the end.
 
+use crate::messages::failure;
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
@@ -16,9 +17,9 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use knotdock::progress::{Ended, Progress};
 
 use crate::messages::colour::painted;
-use crate::messages::failure::Failure;
 use crate::messages::listener::Listener;
 use crate::messages::shown::{shown, shown_json};
+use knotdock_structures::Error;
 
 /// Why a part of the report could not be written, the first time that happened.
 static LOST: OnceLock<io::Error> = OnceLock::new();
@@ -76,7 +77,7 @@ impl<'a> Console<'a> {
     }
 
     /// Whether all of the report could be written, if anyone was there to read it.
-    pub fn all_said() -> Result<(), Failure> {
+    pub fn all_said() -> Result<(), Error> {
         LOST.get().map_or(Ok(()), unwritten)
     }
 
@@ -103,7 +104,7 @@ impl<'a> Console<'a> {
 
     /// Writes the command's JSON object, if it was requested: what cannot be written is a failure then, for the
     /// object is all there is, unless its reader has gone.
-    pub fn result(&self, object: &serde_json::Value) -> Result<(), Failure> {
+    pub fn result(&self, object: &serde_json::Value) -> Result<(), Error> {
         if let Some(listener) = self.listener {
             listener.result(object);
             return Ok(());
@@ -120,12 +121,12 @@ impl<'a> Console<'a> {
     }
 
     /// Writes a failure: for a person on standard error, for a program on standard output as well.
-    pub fn fail(&self, failure: &Failure) {
+    pub fn fail(&self, failure: &Error) {
         if self.json {
-            let object = failure.json().to_string();
+            let object = failure::json(failure).to_string();
             write_line(&mut io::stdout(), &shown_json(&object));
         }
-        write_line(&mut io::stderr(), &painted(&shown(&failure.text())));
+        write_line(&mut io::stderr(), &painted(&shown(&failure::text(failure))));
     }
 
     /// Tells whoever listens that a stage of so many steps begins; the terminal has lines of its own for them.
@@ -143,9 +144,9 @@ impl<'a> Console<'a> {
     }
 
     /// Fails where whoever listens ends the command.
-    pub fn go_on(&self) -> Result<(), Failure> {
+    pub fn go_on(&self) -> Result<(), Error> {
         let ended = self.listener.map_or(Ok(()), Listener::go_on);
-        ended.map_err(|why| Failure::of_program(why).remedy("start it again"))
+        ended.map_err(|why| Error::lasting(why).help("start it again"))
     }
 
     /// A progress bar on standard error; none when that is not a terminal or words are not wanted.
@@ -169,13 +170,13 @@ impl<'a> Console<'a> {
 }
 
 /// A failure to write to standard output, unless its reader has gone.
-fn unwritten(error: &io::Error) -> Result<(), Failure> {
+fn unwritten(error: &io::Error) -> Result<(), Error> {
     if error.kind() == io::ErrorKind::BrokenPipe {
         return Ok(());
     }
     Err(
-        Failure::other(format!("cannot write to standard output: {error}"))
-            .remedy("check the free space there"),
+        Error::machine(format!("cannot write to standard output: {error}"))
+            .help("check the free space there"),
     )
 }
 

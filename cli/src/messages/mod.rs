@@ -6,7 +6,6 @@ pub mod console;
 pub mod dock;
 pub mod failure;
 pub mod leftovers;
-pub mod library_errors;
 pub mod listener;
 pub mod run_summary;
 pub mod shown;

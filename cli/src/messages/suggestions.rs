@@ -77,6 +77,14 @@ pub fn explained(mut error: clap::Error) -> clap::Error {
     error
 }
 
+/// The message of a wrong command line, without the lines on usage.
+pub fn first_paragraph(error: &clap::Error) -> String {
+    // clap's text is the message with usage lines; its first paragraph is the message.
+    let text = error.render().to_string();
+    let message = text.split("\n\n").next().unwrap_or(&text);
+    message.trim_start_matches("error: ").trim().to_owned()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -1,5 +1,6 @@
 //! The part of a `run.json` that later commands read.
 
+use knotdock_structures::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -185,5 +186,14 @@ impl RecordedRun {
             && natives
             && self.options
                 == options.changed(|options| options.machine = MachineOptions::default())
+    }
+}
+
+impl From<RecordedRunError> for Error {
+    fn from(error: RecordedRunError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .help(error.remedy())
     }
 }

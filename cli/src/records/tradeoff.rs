@@ -9,7 +9,7 @@ use serde_json::{Map, Number, Value};
 use crate::tradeoff::advice::Advice;
 use crate::tradeoff::{Measured, Refused, Tradeoff};
 use knotdock::options::DockOptions;
-use knotdock::options::check::name_of;
+use knotdock::options::definition::name_of;
 use knotdock::output::files::whole_file::to_json;
 use knotdock::output::records::manifest::{Inputs, Machine};
 use knotdock::output::records::program::Program;

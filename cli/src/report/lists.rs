@@ -1,5 +1,6 @@
 //! Reports of batches, ensembles and sweeps, from the files of their directories.
 
+use knotdock_structures::Error;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -265,4 +266,10 @@ fn tradeoff(files: &Path, name: &str) -> Result<ListReport, ListError> {
         ],
         picture: Some((picture, "Error and agreement against time")),
     })
+}
+
+impl From<ListError> for Error {
+    fn from(error: ListError) -> Self {
+        Self::input(&error).at(&error.path).help(error.remedy())
+    }
 }

@@ -35,7 +35,7 @@ mod solids;
 mod viewer;
 
 pub use contacts::RunContacts;
-pub use lists::{ListError, Listed};
+pub use lists::Listed;
 pub use run_parts::{ReportBodies, RunReport};
 pub use solids::SolidsReport;
 pub use viewer::{Viewer, ViewerError};

@@ -7,7 +7,7 @@ use serde_json::Value;
 use crate::report::html::{escaped, table};
 use crate::report::run_parts::RunReport;
 use crate::shell_word::shell_word;
-use knotdock::options::{DockOptions, definitions, text};
+use knotdock::options::definitions;
 
 /// Effects, errors and times.
 pub(super) fn cost(report: &RunReport) -> String {
@@ -184,10 +184,7 @@ pub(super) fn options(report: &RunReport) -> String {
         vec![option.long().to_owned(), words(value)]
     };
     let head = ["option", "value"].map(str::to_owned).to_vec();
-    let given: Vec<Vec<String>> =
-        text::given(report.options, &DockOptions::default(), definitions())
-            .map(line)
-            .collect();
+    let given: Vec<Vec<String>> = report.options.given().map(line).collect();
     html += &match given.is_empty() {
         true => "<p>All options have their defaults.</p>\n".to_owned(),
         false => table(

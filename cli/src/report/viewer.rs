@@ -1,5 +1,6 @@
 //! The library of the three-dimensional view: 3Dmol.js (Rego and Koes, Bioinformatics 31 (2015) 1322-1324), as npm has it.
 
+use knotdock_structures::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
@@ -80,4 +81,10 @@ fn embedded() -> Option<Viewer> {
 #[cfg(not(feature = "viewer"))]
 fn embedded() -> Option<Viewer> {
     None
+}
+
+impl From<ViewerError> for Error {
+    fn from(error: ViewerError) -> Self {
+        Self::input(&error).at(&error.path).help(error.remedy())
+    }
 }

@@ -1,5 +1,7 @@
 //! The shards of a batch put together, in the order of the table of pairs.
 
+use knotdock::output::files::file_error;
+use knotdock_structures::Error;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::fs::{self, File};
@@ -12,7 +14,7 @@ use super::record::BatchRecord;
 use super::{POSES, SHARDS, Shard, pose_rows};
 use crate::tables::batch_results::{RESULTS, head};
 use knotdock::output::files::folder::{make_folder, open_own};
-use knotdock::output::files::whole_file::{FileError, StagedFile, is_link, leftovers};
+use knotdock::output::files::whole_file::{StagedFile, is_link, leftovers};
 
 /// Files that are open at the same time.
 const OPEN: usize = 128;
@@ -45,13 +47,13 @@ struct MergedPair {
 /// shards may be missing. Other files of these names are replaced only with `force`.
 ///
 /// # Errors
-/// [`FileError`] when there is no shard, when shards are of different batches or twice there, when one is missing or not
+/// [`Error`] when there is no shard, when shards are of different batches or twice there, when one is missing or not
 /// done, and when a file cannot be read or written.
 pub fn merge(
     directories: &[PathBuf],
     out: &Path,
     (partial, force): (bool, bool),
-) -> Result<Merged, FileError> {
+) -> Result<Merged, Error> {
     let folder_of =
         |shard: Shard, directory: usize| directories[directory].join(SHARDS).join(shard.folder());
     let mut shards: Vec<(Shard, usize)> = Vec::new();
@@ -69,7 +71,7 @@ pub fn merge(
             let beside = shards
                 .first()
                 .map_or(folder.clone(), |one| folder_of(one.0, one.1));
-            return Err(FileError::refused(
+            return Err(file_error::refused(
                 folder,
                 format!(
                     "this shard is of other pairs or options, or by another version, than that in {}",
@@ -91,7 +93,7 @@ pub fn merge(
             }
         }
         if let Some(stray) = found.keys().min() {
-            return Err(FileError::refused(
+            return Err(file_error::refused(
                 &folder.join(RESULTS),
                 format!("there is a row of {stray}, which is no pair of shard {shard}"),
                 "remove the shard's folder, and dock it again",
@@ -110,7 +112,7 @@ pub fn merge(
         complete(&record, shards.iter().map(|one| one.0.index()), &pairs, at)?;
     }
     if is_link(out) {
-        return Err(FileError::link(out));
+        return Err(file_error::link(out));
     }
     make_folder(out)?;
     let copied = |name: &str, head: &[u8], part: fn(&MergedPair) -> Option<Range>| {
@@ -135,12 +137,12 @@ pub fn merge(
             }
             Ok(())
         })?;
-        Ok::<_, FileError>((path, staged))
+        Ok::<_, Error>((path, staged))
     };
     let left = [RESULTS, POSES].map(|name| leftovers(&out.join(name)));
     let mut written = vec![copied(RESULTS, &head(), |pair| Some(pair.row))?];
     if record.keep.has_poses() {
-        let header = pose_rows::header().map_err(|error| FileError::writing(out, error))?;
+        let header = pose_rows::header().map_err(|error| file_error::writing(out, error))?;
         written.push(copied(POSES, &header, |pair| pair.poses)?);
     }
     // Neither takes its place before both may.
@@ -149,7 +151,7 @@ pub fn merge(
     for (path, staged) in written {
         if !staged.is_there()? {
             if !force && path.symlink_metadata().is_ok() {
-                return Err(FileError::refused(
+                return Err(file_error::refused(
                     &path,
                     "another file is already there",
                     "choose another directory with -o, or pass --force to replace it",
@@ -172,20 +174,20 @@ pub fn merge(
 }
 
 /// The shards in some directories, each with the number of its directory.
-fn shards_in(directories: &[PathBuf]) -> Result<BTreeMap<Shard, usize>, FileError> {
+fn shards_in(directories: &[PathBuf]) -> Result<BTreeMap<Shard, usize>, Error> {
     let mut shards: BTreeMap<Shard, usize> = BTreeMap::new();
     for (number, directory) in directories.iter().enumerate() {
         let place = directory.join(SHARDS);
         if is_link(&place) {
-            return Err(FileError::link(&place));
+            return Err(file_error::link(&place));
         }
         let entries = match fs::read_dir(&place) {
             Ok(entries) => entries,
             Err(error) if error.kind() == io::ErrorKind::NotFound => continue,
-            Err(error) => return Err(FileError::reading(&place, error)),
+            Err(error) => return Err(file_error::reading(&place, error)),
         };
         for entry in entries {
-            let entry = entry.map_err(|source| FileError::reading(&place, source))?;
+            let entry = entry.map_err(|source| file_error::reading(&place, source))?;
             let is_folder = entry.file_type().is_ok_and(|kind| kind.is_dir());
             let name = entry.file_name();
             let shard = name
@@ -197,7 +199,7 @@ fn shards_in(directories: &[PathBuf]) -> Result<BTreeMap<Shard, usize>, FileErro
             };
             if let Some(twice) = shards.insert(shard, number) {
                 let twice = directories[twice].display();
-                return Err(FileError::refused(
+                return Err(file_error::refused(
                     &entry.path(),
                     format!("shard {shard} is in {twice}, too"),
                     "name each directory once",
@@ -208,8 +210,8 @@ fn shards_in(directories: &[PathBuf]) -> Result<BTreeMap<Shard, usize>, FileErro
     Ok(shards)
 }
 
-fn no_shards(directories: &[PathBuf]) -> FileError {
-    FileError::refused(
+fn no_shards(directories: &[PathBuf]) -> Error {
+    file_error::refused(
         directories.first().map_or(Path::new(""), PathBuf::as_path),
         "there are no shards of a batch",
         "name the directory that `knotdock batch --shard` wrote to with -o; a batch without --shard needs no merge",
@@ -222,9 +224,9 @@ fn complete(
     there: impl Iterator<Item = usize>,
     pairs: &BTreeMap<usize, MergedPair>,
     at: &Path,
-) -> Result<(), FileError> {
+) -> Result<(), Error> {
     let count = record.shard.count();
-    let refused = |message: String, remedy: &str| Err(FileError::refused(at, message, remedy));
+    let refused = |message: String, remedy: &str| Err(file_error::refused(at, message, remedy));
     if let Some(missing) = gaps(there, count) {
         return refused(
             format!("shards {missing} of {count} are missing"),

@@ -1,6 +1,8 @@
 //! The files of a batch or a shard as they grow: what is there is known when they are opened, and what is added is
 //! whole.
 
+use knotdock::output::files::file_error;
+use knotdock_structures::Error;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufReader};
@@ -12,7 +14,7 @@ use super::{ATTEMPTS, POSES, PosesOfPair, pose_rows};
 use crate::tables::batch_results::{PairResult, RESULTS, head, name_and_status, row};
 use knotdock::output::files::appended::AppendedFile;
 use knotdock::output::files::folder::{next_line, open_own};
-use knotdock::output::files::whole_file::{FileError, StagedFile};
+use knotdock::output::files::whole_file::StagedFile;
 use knotdock::table_text::cells::unquoted;
 
 /// A batch's or a shard's files, open for further pairs.
@@ -35,8 +37,8 @@ impl Part {
     /// so is what comes behind a place that is damaged.
     ///
     /// # Errors
-    /// [`FileError`] when a file cannot be read or written, or is another's.
-    pub fn open(folder: &Path, record: &BatchRecord) -> Result<Self, FileError> {
+    /// [`Error`] when a file cannot be read or written, or is another's.
+    pub fn open(folder: &Path, record: &BatchRecord) -> Result<Self, Error> {
         let has_poses = record.keep.has_poses();
         let found = Index::of(folder, has_poses)?;
         let [results, poses, attempts] = [RESULTS, POSES, ATTEMPTS].map(|name| folder.join(name));
@@ -61,7 +63,7 @@ impl Part {
             lost: found.lost,
         };
         if let (0, Some(poses)) = (found.poses_end, &mut part.poses) {
-            let header = pose_rows::header().map_err(|error| FileError::writing(folder, error))?;
+            let header = pose_rows::header().map_err(|error| file_error::writing(folder, error))?;
             poses.append(&header)?;
         }
         if found.results_end == 0 {
@@ -89,8 +91,8 @@ impl Part {
     /// Notes that a pair is started.
     ///
     /// # Errors
-    /// [`FileError`].
-    pub fn start(&mut self, name: &str) -> Result<(), FileError> {
+    /// [`Error`].
+    pub fn start(&mut self, name: &str) -> Result<(), Error> {
         self.attempts.append(format!("{name}\n").as_bytes())?;
         *self.started.entry(name.to_owned()).or_insert(0) += 1;
         Ok(())
@@ -99,12 +101,8 @@ impl Part {
     /// Adds what came of a pair: its poses, where they are kept and it has some, then its row.
     ///
     /// # Errors
-    /// [`FileError`]; the pair is not there then, and nothing of it is in the way.
-    pub fn add(
-        &mut self,
-        result: &PairResult,
-        poses: Option<&PosesOfPair>,
-    ) -> Result<(), FileError> {
+    /// [`Error`]; the pair is not there then, and nothing of it is in the way.
+    pub fn add(&mut self, result: &PairResult, poses: Option<&PosesOfPair>) -> Result<(), Error> {
         let poses = match (&mut self.poses, poses) {
             (Some(file), Some(poses)) => Some(file.append(poses.bytes())?),
             _ => None,
@@ -121,13 +119,13 @@ impl Part {
     /// Puts rows and poses in the order of the table, each pair once, when all of them are there.
     ///
     /// # Errors
-    /// [`FileError`].
-    pub fn finish(self, record: &BatchRecord) -> Result<(), FileError> {
+    /// [`Error`].
+    pub fn finish(self, record: &BatchRecord) -> Result<(), Error> {
         let names = record.own.iter().map(|(name, _)| name);
         let pairs: Vec<&PairFiles> = names.filter_map(|name| self.pairs.get(name)).collect();
         let folder = &self.folder;
         if let Some(file) = &self.poses {
-            let header = pose_rows::header().map_err(|error| FileError::writing(folder, error))?;
+            let header = pose_rows::header().map_err(|error| file_error::writing(folder, error))?;
             let poses: Vec<Range> = pairs.iter().filter_map(|pair| pair.poses).collect();
             put_in_order(&folder.join(POSES), &header, &poses, file.end())?;
         }
@@ -140,7 +138,7 @@ impl Part {
 pub(super) type Range = (u64, u64);
 
 /// Writes a file anew with some of its parts in another order, if it has them in another.
-fn put_in_order(path: &Path, head: &[u8], parts: &[Range], end: u64) -> Result<(), FileError> {
+fn put_in_order(path: &Path, head: &[u8], parts: &[Range], end: u64) -> Result<(), Error> {
     let start = head.len() as u64;
     let follows = |at: u64, part: &Range| (part.0 == at).then_some(part.1);
     if parts.iter().try_fold(start, follows) == Some(end) {
@@ -180,19 +178,19 @@ impl Index {
     /// Reads the files in a folder, as far as they are whole.
     ///
     /// # Errors
-    /// [`FileError`] where they cannot be read, or are no files of a batch.
-    pub fn of(folder: &Path, has_poses: bool) -> Result<Self, FileError> {
+    /// [`Error`] where they cannot be read, or are no files of a batch.
+    pub fn of(folder: &Path, has_poses: bool) -> Result<Self, Error> {
         let mut poses = HashMap::new();
         let mut poses_end = 0;
         let path = folder.join(POSES);
         if has_poses && path.symlink_metadata().is_ok() {
             let refused = |source: io::Error| match source.kind() {
-                io::ErrorKind::FileTooLarge => FileError::refused(
+                io::ErrorKind::FileTooLarge => file_error::refused(
                     &path,
                     format!("this is no file of poses of a batch: {source}"),
                     "remove its folder, and dock it again",
                 ),
-                _ => FileError::reading(&path, source),
+                _ => file_error::reading(&path, source),
             };
             let mut members = Members::of(open_own(&path)?);
             while let Some(member) = members.next().map_err(refused)? {
@@ -229,7 +227,7 @@ impl Index {
         })?;
         if is_other {
             let message = "this is not a table of results of a batch";
-            return Err(FileError::refused(
+            return Err(file_error::refused(
                 &path,
                 message,
                 "remove its folder, and dock it again",
@@ -245,14 +243,14 @@ impl Index {
 }
 
 /// Hands on the whole lines of a file and where they are, until `take` wants no more; none where there is no file.
-fn read_lines(path: &Path, mut take: impl FnMut(&[u8], Range) -> bool) -> Result<(), FileError> {
+fn read_lines(path: &Path, mut take: impl FnMut(&[u8], Range) -> bool) -> Result<(), Error> {
     if path.symlink_metadata().is_err() {
         return Ok(());
     }
     let mut file: BufReader<File> = BufReader::new(open_own(path)?);
     let (mut line, mut start) = (Vec::new(), 0);
     while next_line(&mut file, &mut line).map_err(|source| {
-        FileError::refused(
+        file_error::refused(
             path,
             format!("cannot read {}: {source}", path.display()),
             "remove its folder, and dock it again",

@@ -1,5 +1,7 @@
 //! `batch.json`: which pairs and options a batch, or a shard of it, is of.
 
+use knotdock::output::files::file_error;
+use knotdock_structures::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -10,7 +12,7 @@ use crate::tables::batch_results::RESULTS;
 use knotdock::bounded_read::MAX_RECORD;
 use knotdock::output::files::folder::{make_folder, names_in, read_own};
 use knotdock::output::files::lock::Lock;
-use knotdock::output::files::whole_file::{FileError, StagedFile, is_link, leftovers};
+use knotdock::output::files::whole_file::{StagedFile, is_link, leftovers};
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 
 /// Name of the file.
@@ -98,8 +100,8 @@ impl BatchRecord {
     /// Reads the record in a folder; `None` where there is none.
     ///
     /// # Errors
-    /// [`FileError`] when it cannot be read or is no such record.
-    pub fn read(folder: &Path) -> Result<Option<Self>, FileError> {
+    /// [`Error`] when it cannot be read or is no such record.
+    pub fn read(folder: &Path) -> Result<Option<Self>, Error> {
         let path = folder.join(RECORD);
         if path.symlink_metadata().is_err() {
             return Ok(None);
@@ -107,7 +109,7 @@ impl BatchRecord {
         let bytes = read_own(&path, MAX_RECORD)?;
         serde_json::from_slice(&bytes).map(Some).map_err(|error| {
             let message = format!("this is not the record of a batch: {error}");
-            FileError::refused(&path, message, "remove its folder, and dock it again")
+            file_error::refused(&path, message, "remove its folder, and dock it again")
         })
     }
 
@@ -115,10 +117,10 @@ impl BatchRecord {
     /// until the end, and what ended commands left there.
     ///
     /// # Errors
-    /// [`FileError`] when the folder is another's, when another command writes to it, and when it cannot be made.
-    pub fn take(&self, folder: &Path) -> Result<(Lock, Vec<PathBuf>), FileError> {
+    /// [`Error`] when the folder is another's, when another command writes to it, and when it cannot be made.
+    pub fn take(&self, folder: &Path) -> Result<(Lock, Vec<PathBuf>), Error> {
         if is_link(folder) {
-            return Err(FileError::link(folder));
+            return Err(file_error::link(folder));
         }
         make_folder(folder)?;
         let lock = Lock::take(&folder.join(LOCK))?;
@@ -127,7 +129,7 @@ impl BatchRecord {
             Some(found) => self.check(&found, folder)?,
             None => {
                 if let Some(other) = Self::others_in(folder)? {
-                    return Err(FileError::refused(
+                    return Err(file_error::refused(
                         folder,
                         format!(
                             "the directory is not empty and holds no batch of knotdock: there is {other}"
@@ -142,7 +144,7 @@ impl BatchRecord {
     }
 
     /// Something in a folder that no ended command of a batch left there.
-    pub(super) fn others_in(folder: &Path) -> Result<Option<String>, FileError> {
+    pub(super) fn others_in(folder: &Path) -> Result<Option<String>, Error> {
         let left = left_in(folder);
         let is_left = |name: &str| left.iter().any(|path| path.ends_with(name));
         let mut names = names_in(folder)?.into_iter();
@@ -152,15 +154,15 @@ impl BatchRecord {
     /// Writes it into a folder.
     ///
     /// # Errors
-    /// [`FileError`].
-    pub(super) fn write(&self, folder: &Path) -> Result<(), FileError> {
+    /// [`Error`].
+    pub(super) fn write(&self, folder: &Path) -> Result<(), Error> {
         let write = |file: &mut dyn Write| Ok(serde_json::to_writer(file, self)?);
         StagedFile::own(&folder.join(RECORD), write)?.place()
     }
 
     /// Refuses a folder with the record of another batch; rows that differ are named.
-    fn check(&self, found: &Self, folder: &Path) -> Result<(), FileError> {
-        let refused = |message: String| Err(FileError::refused(folder, message, OTHER));
+    fn check(&self, found: &Self, folder: &Path) -> Result<(), Error> {
+        let refused = |message: String| Err(file_error::refused(folder, message, OTHER));
         let rows = found.own.len().max(self.own.len());
         let differs = |&row: &usize| found.own.get(row) != self.own.get(row);
         let differing: Vec<usize> = (0..rows).filter(differs).collect();

@@ -1,5 +1,7 @@
 //! A folder on a disk that is near, in which the files of a batch grow until it is done.
 
+use knotdock::output::files::file_error;
+use knotdock_structures::Error;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -9,7 +11,7 @@ use super::{ATTEMPTS, POSES};
 use crate::tables::batch_results::RESULTS;
 use knotdock::output::files::checksum::sha256;
 use knotdock::output::files::folder::{clear, make_folder, open_own};
-use knotdock::output::files::whole_file::{FileError, StagedFile, is_link};
+use knotdock::output::files::whole_file::{StagedFile, is_link};
 
 /// The growing files, in the order in which they are copied: a row comes after the poses that it stands for.
 const FILES: [&str; 3] = [POSES, RESULTS, ATTEMPTS];
@@ -25,17 +27,17 @@ impl Scratch {
     /// A folder in `scratch` for the batch of a place. It begins as whichever of the two has gone further.
     ///
     /// # Errors
-    /// [`FileError`] where a folder of this name is another's, and where a file cannot be read or written.
-    pub fn open(scratch: &Path, place: &Path, record: &BatchRecord) -> Result<Self, FileError> {
+    /// [`Error`] where a folder of this name is another's, and where a file cannot be read or written.
+    pub fn open(scratch: &Path, place: &Path, record: &BatchRecord) -> Result<Self, Error> {
         make_folder(scratch)?;
-        let unreadable = |source| FileError::reading(place, source);
+        let unreadable = |source| file_error::reading(place, source);
         let place = place.canonicalize().map_err(unreadable)?;
         // Places of the same name are told apart by where they are.
         let sum = sha256(place.to_string_lossy().as_bytes());
         let name = place.file_name().unwrap_or_default().to_string_lossy();
         let folder = scratch.join(format!("knotdock-{}-{name}", &sum[..12]));
         if is_link(&folder) {
-            return Err(FileError::link(&folder));
+            return Err(file_error::link(&folder));
         }
         make_folder(&folder)?;
         match BatchRecord::read(&folder)? {
@@ -44,7 +46,7 @@ impl Scratch {
                 record.write(&folder)?;
             }
             _ => {
-                return Err(FileError::refused(
+                return Err(file_error::refused(
                     &folder,
                     "the scratch folder is not empty and not this batch's",
                     "remove it, or name another --scratch",
@@ -67,8 +69,8 @@ impl Scratch {
     /// Copies the files to their place, each whole, and removes them here.
     ///
     /// # Errors
-    /// [`FileError`]; the files are still here then.
-    pub fn copy_out(self) -> Result<(), FileError> {
+    /// [`Error`]; the files are still here then.
+    pub fn copy_out(self) -> Result<(), Error> {
         copy(&self.folder, &self.place)?;
         // What stays is found by the next call, or is in nobody's way.
         clear(&self.folder, &[POSES, RESULTS, ATTEMPTS, RECORD]);
@@ -76,7 +78,7 @@ impl Scratch {
     }
 }
 
-fn copy(from: &Path, to: &Path) -> Result<(), FileError> {
+fn copy(from: &Path, to: &Path) -> Result<(), Error> {
     for name in FILES {
         if from.join(name).symlink_metadata().is_ok() {
             let mut file = open_own(&from.join(name))?;

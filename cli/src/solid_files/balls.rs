@@ -1,11 +1,12 @@
 //! Knots as files: a table (`knots.csv`), a mesh of spheres (OBJ), and pseudo-atoms (PDB).
 
+use knotdock_structures::Error;
 use std::io;
 use std::path::Path;
 
 use knotdock_structures::{Ball, Knots};
 
-use knotdock::output::files::whole_file::{FileError, StagedFile};
+use knotdock::output::files::whole_file::StagedFile;
 
 /// Header of the table.
 pub const COLUMNS: &str = "x,y,z,r,weight";
@@ -14,8 +15,8 @@ pub const COLUMNS: &str = "x,y,z,r,weight";
 /// double.
 ///
 /// # Errors
-/// [`FileError`] when the file cannot be made or written.
-pub fn write_table(knots: &Knots, path: &Path) -> Result<StagedFile, FileError> {
+/// [`Error`] when the file cannot be made or written.
+pub fn write_table(knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
     StagedFile::write(path, |file| {
         writeln!(file, "{COLUMNS}")?;
         for ((center, radius), weight) in knots.centers.iter().zip(&knots.radii).zip(&knots.weights)
@@ -34,8 +35,8 @@ pub fn write_table(knots: &Knots, path: &Path) -> Result<StagedFile, FileError> 
 /// Writes the balls as an OBJ mesh: a sphere of 80 triangles each, circumscribed about none and inscribed in its ball.
 ///
 /// # Errors
-/// [`FileError`] when the file cannot be made or written.
-pub fn write_mesh(knots: &Knots, path: &Path) -> Result<StagedFile, FileError> {
+/// [`Error`] when the file cannot be made or written.
+pub fn write_mesh(knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
     let (vertices, triangles) = icosphere();
     StagedFile::write(path, |file| {
         writeln!(file, "# {} balls written by knotdock sample", knots.len())?;
@@ -139,7 +140,7 @@ pub enum PseudoAtomError {
     },
     /// The file could not be written.
     #[error(transparent)]
-    File(#[from] FileError),
+    File(#[from] Error),
 }
 
 /// Writes the balls as pseudo-atoms of a PDB file, with three decimals.
@@ -184,6 +185,17 @@ pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<StagedFile, Pseu
         io::Result::Ok(())
     })?;
     Ok(staged)
+}
+
+impl From<PseudoAtomError> for Error {
+    fn from(error: PseudoAtomError) -> Self {
+        match error {
+            PseudoAtomError::Coordinate { .. } => {
+                Self::input(&error).help("move or scale the mesh, or export the balls as .obj")
+            }
+            PseudoAtomError::File(error) => error,
+        }
+    }
 }
 
 #[cfg(test)]

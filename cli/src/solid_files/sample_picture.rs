@@ -3,6 +3,7 @@
 //!
 //! The slice is the plane through the middle of the solid across the shortest edge of its bounding box.
 
+use knotdock_structures::Error;
 use std::path::Path;
 
 use knotdock_structures::mesh::Solid;
@@ -15,7 +16,7 @@ use crate::plot::svg::{Colour, Svg};
 use knotdock::geometry::bracket::{bounds, shifted};
 use knotdock::geometry::obstacle::reduce::reduced;
 
-use knotdock::output::files::whole_file::{FileError, StagedFile};
+use knotdock::output::files::whole_file::StagedFile;
 
 /// Pixels along the longer edge of a slice.
 const PIXELS: usize = 72;
@@ -35,8 +36,8 @@ const SEEN: &str = "fill=\"url(#ball)\" stroke=\"#703010\" stroke-width=\"0.2\""
 /// Writes the picture of `balls` (in the solid's unit) beside the fields of `solid`.
 ///
 /// # Errors
-/// [`FileError`] when the file cannot be made or written.
-pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<StagedFile, FileError> {
+/// [`Error`] when the file cannot be made or written.
+pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<StagedFile, Error> {
     let text = picture(solid, balls);
     StagedFile::write(path, |file| file.write_all(text.as_bytes()))
 }
@@ -44,12 +45,12 @@ pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<Stage
 /// Writes the picture of a solid between two sets of balls: the slices of both, and the outer balls from outside.
 ///
 /// # Errors
-/// [`FileError`] when the file cannot be made or written.
+/// [`Error`] when the file cannot be made or written.
 pub fn write_ball_picture(
     inner: &[Ball],
     outer: &[Ball],
     path: &Path,
-) -> Result<StagedFile, FileError> {
+) -> Result<StagedFile, Error> {
     let (low, high) = bounds(outer);
     let middle = [0, 1, 2].map(|axis| -0.5 * (low[axis] + high[axis]));
     let view = View::of_box([0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis])));

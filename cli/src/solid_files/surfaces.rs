@@ -2,10 +2,11 @@
 //!
 //! OBJ and PLY keep all digits. STL holds 32-bit floats, seven digits of a coordinate.
 
+use knotdock_structures::Error;
 use std::io::{self, Write};
 use std::path::Path;
 
-use knotdock::output::files::whole_file::{FileError, StagedFile};
+use knotdock::output::files::whole_file::StagedFile;
 
 /// A format of meshes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -34,13 +35,13 @@ impl SurfaceFormat {
 /// Writes vertices and triangles (numbers of vertices from zero, anticlockwise from outside).
 ///
 /// # Errors
-/// [`FileError`] when the file cannot be made or written.
+/// [`Error`] when the file cannot be made or written.
 pub fn write_surface(
     positions: &[[f64; 3]],
     triangles: &[[u32; 3]],
     format: SurfaceFormat,
     path: &Path,
-) -> Result<StagedFile, FileError> {
+) -> Result<StagedFile, Error> {
     StagedFile::write(path, |file| match format {
         SurfaceFormat::Obj => write_obj(positions, triangles, file),
         SurfaceFormat::Stl => write_stl(positions, triangles, file),

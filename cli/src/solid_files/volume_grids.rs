@@ -13,10 +13,11 @@
 //! Sources: Cheng et al., "MRC2014", Journal of Structural Biology 192 (2015); teem.sourceforge.net/nrrd/format.html;
 //! "VTK File Formats", Kitware.
 
+use knotdock_structures::Error;
 use std::io::{self, Write};
 use std::path::Path;
 
-use knotdock::output::files::whole_file::{FileError, StagedFile};
+use knotdock::output::files::whole_file::StagedFile;
 
 /// Values at the nodes of a grid. Index (z ny + y) nx + x.
 #[derive(Clone, Copy, Debug)]
@@ -60,12 +61,12 @@ impl VolumeFormat {
 /// Writes a grid.
 ///
 /// # Errors
-/// [`FileError`] when the file cannot be made or written.
+/// [`Error`] when the file cannot be made or written.
 pub fn write_volume(
     grid: &VolumeGrid,
     format: VolumeFormat,
     path: &Path,
-) -> Result<StagedFile, FileError> {
+) -> Result<StagedFile, Error> {
     StagedFile::write(path, |file| match format {
         VolumeFormat::Mrc => write_mrc(grid, file),
         VolumeFormat::Nrrd => write_nrrd(grid, file),

@@ -3,11 +3,12 @@
 //! RFC 4180, but with LF as the line end; a row an atom of the model that was read, in the order of the file.
 //! `docs/reference/json_output.md` describes the columns.
 
+use knotdock_structures::Error;
 use std::path::Path;
 
 use knotdock_structures::molecule::{AtomFate, DropKind};
 
-use knotdock::output::files::whole_file::{FileError, write_whole};
+use knotdock::output::files::whole_file::write_whole;
 use knotdock::output::tables::fields::number;
 use knotdock::table_text::cells::TableWriter;
 
@@ -34,8 +35,8 @@ pub const COLUMNS: [&str; 16] = [
 /// Writes the table, whole or not at all.
 ///
 /// # Errors
-/// [`FileError`].
-pub fn write(path: &Path, fates: &[AtomFate]) -> Result<(), FileError> {
+/// [`Error`].
+pub fn write(path: &Path, fates: &[AtomFate]) -> Result<(), Error> {
     write_whole(path, |file| {
         let mut table = TableWriter::new(file);
         table.row(COLUMNS)?;

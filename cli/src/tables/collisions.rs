@@ -3,6 +3,7 @@
 //! RFC 4180, but with LF as the line end. `docs/reference/solids_files.md` describes the columns. All of them but `microseconds` are
 //! the same for any number of threads.
 
+use knotdock_structures::Error;
 use std::io;
 
 use csv::StringRecord;
@@ -10,7 +11,7 @@ use knotdock_scoring::se3::Pose;
 use serde_json::{Map, Value, json};
 
 use knotdock::geometry::collide::Answer;
-use knotdock::output::files::whole_file::{FileError, StagedFile};
+use knotdock::output::files::whole_file::StagedFile;
 use knotdock::output::tables::fields::number;
 use knotdock::table_text::cells::TableWriter;
 use std::path::Path;
@@ -126,8 +127,8 @@ fn rows<'a>(poses: &'a [Pose], answers: &'a [Answer]) -> impl Iterator<Item = Ro
 /// Writes the table beside its place.
 ///
 /// # Errors
-/// [`FileError`].
-pub fn write(path: &Path, poses: &[Pose], answers: &[Answer]) -> Result<StagedFile, FileError> {
+/// [`Error`].
+pub fn write(path: &Path, poses: &[Pose], answers: &[Answer]) -> Result<StagedFile, Error> {
     StagedFile::write(path, |file| write_to(file, poses, answers))
 }
 

@@ -1,5 +1,6 @@
 //! The table of pairs that a batch docks: one row a pair, columns by name.
 
+use knotdock_structures::Error;
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
@@ -168,6 +169,16 @@ fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {
         }
     }
     row
+}
+
+impl From<PairTableError> for Error {
+    fn from(error: PairTableError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .help("give a CSV file with columns `receptor` and `ligand`, optionally `name` and options of \
+                `knotdock dock`, and a row for each pair")
+    }
 }
 
 #[cfg(test)]

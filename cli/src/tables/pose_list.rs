@@ -2,11 +2,12 @@
 //!
 //! A `poses.csv` of a run is one. Columns that are not needed are passed over.
 
+use knotdock_structures::Error;
 use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
 
-use knotdock::output::files::whole_file::{FileError, StagedFile};
+use knotdock::output::files::whole_file::StagedFile;
 use knotdock::output::tables::poses_reader::{PlacementColumns, PoseTableError};
 use knotdock::table_text::cells::unquoted_row;
 use knotdock::table_text::csv_lines::line_of;
@@ -60,8 +61,8 @@ pub fn read_list(path: &Path, text: &[u8]) -> Result<Vec<Pose>, PoseTableError> 
 /// Writes a list, with a header; numbers read back to the same double.
 ///
 /// # Errors
-/// [`FileError`] when the file cannot be made or written.
-pub fn write_list(path: &Path, poses: &[Pose]) -> Result<StagedFile, FileError> {
+/// [`Error`] when the file cannot be made or written.
+pub fn write_list(path: &Path, poses: &[Pose]) -> Result<StagedFile, Error> {
     StagedFile::write(path, |file| {
         writeln!(file, "qw,qx,qy,qz,tx,ty,tz")?;
         for pose in poses {

@@ -1,8 +1,8 @@
 //! Changes of single options: what settings of a sweep are made of.
 
-use knotdock::error::SearchError;
 use knotdock::options::definition::Definition;
 use knotdock::options::{DockOptions, option_named};
+use knotdock_structures::Error;
 
 /// A change of one option.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,8 +25,8 @@ impl Change {
     /// The options with the change.
     ///
     /// # Errors
-    /// [`SearchError::Option`] for a value out of range.
-    pub fn apply(&self, options: &DockOptions) -> Result<DockOptions, SearchError> {
+    /// [`Error`] for a value out of range.
+    pub fn apply(&self, options: &DockOptions) -> Result<DockOptions, Error> {
         let mut changed = options.with(self.option, &self.value)?;
         match self.option {
             // A pass length that was given goes along with the resolution, as the default one does.

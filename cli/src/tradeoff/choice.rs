@@ -1,9 +1,10 @@
 //! The setting for an accuracy that is wanted or a time that may be spent.
 
+use knotdock_structures::Error;
 use std::time::Instant;
 
 use crate::tradeoff::cost_model::{CostModel, LADDER, Rung, Workload};
-use knotdock::dock::pair::{PairError, Preparer};
+use knotdock::dock::pair::Preparer;
 use knotdock::dock::plan::DockPlan;
 use knotdock::options::DockOptions;
 use knotdock::output::records::manifest::Chosen;
@@ -25,32 +26,6 @@ pub struct Wanted {
     pub budget: Option<f64>,
 }
 
-/// Why nothing can be chosen.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ChoiceError {
-    /// The pair cannot be docked so.
-    #[error(transparent)]
-    Pair(#[from] PairError),
-    /// More accuracy than there is.
-    #[error("no setting is expected to bring the error down to {wanted:e}; the least is {least:e}")]
-    Accuracy {
-        /// The requested error.
-        wanted: f64,
-        /// The least error.
-        least: f64,
-    },
-}
-
-impl ChoiceError {
-    /// Remedy for the user.
-    pub fn remedy(&self) -> String {
-        match self {
-            Self::Pair(error) => error.remedy(),
-            Self::Accuracy { least, .. } => format!("ask for an accuracy of {least:e} or more"),
-        }
-    }
-}
-
 /// The deadline of a planned run that is to end at `end`, by what the model expects it to take.
 pub fn deadline(plan: &DockPlan, end: Instant) -> Deadline {
     let (model, work) = (CostModel::BUILT_IN, Workload::of(plan));
@@ -64,20 +39,22 @@ pub fn deadline(plan: &DockPlan, end: Instant) -> Deadline {
 /// Chooses tolerance and spacing by the accuracy, then rotations by the budget, into `options`.
 ///
 /// # Errors
-/// [`ChoiceError`].
+/// [`Error`].
 pub fn choose(
     wanted: Wanted,
     options: &mut DockOptions,
     preparer: &mut Preparer,
-) -> Result<Chosen, ChoiceError> {
+) -> Result<Chosen, Error> {
     let mut predicted_error = None;
     if let Some(accuracy) = wanted.accuracy {
         let least = LADDER
             .iter()
             .fold(f64::INFINITY, |least, rung| least.min(rung.error));
-        let rung = Rung::within(accuracy).ok_or(ChoiceError::Accuracy {
-            wanted: accuracy,
-            least,
+        let rung = Rung::within(accuracy).ok_or_else(|| {
+            Error::input(format!(
+                "no setting is expected to bring the error down to {accuracy:e}; the least is {least:e}"
+            ))
+            .help(format!("ask for an accuracy of {least:e} or more"))
         })?;
         rung.apply(options);
         predicted_error = Some(rung.error);

@@ -1,12 +1,12 @@
 //! The settings of a sweep: each parameter on its own around a default, and combinations.
 
 use crate::tradeoff::change::{Change, rounded_to_fours, three_digits};
-use clap::ValueEnum;
-use knotdock::error::SearchError;
 use knotdock::options::DockOptions;
+use knotdock::options::MAX_PER_AXIS;
+use knotdock::options::definition::name_of;
 use knotdock::options::definition::{Definition, Scope};
-use knotdock::options::{MAX_PER_AXIS, check::name_of};
-use knotdock::options::{SampleGrid, option_named};
+use knotdock::options::{Precision, SampleGrid, option_named};
+use knotdock_structures::Error;
 use serde::Serialize;
 
 /// Change of the default that a setting makes.
@@ -41,8 +41,8 @@ const SWEPT: [Swept; 9] = [
     Swept {
         option: "precision",
         values: |_, _| {
-            let precisions = knotdock::options::Precision::value_variants();
-            each("precision", precisions.iter().map(|&one| name_of(one)))
+            let precisions = [Precision::Single, Precision::Double];
+            each("precision", precisions.map(name_of))
         },
     },
     // And so the modes kept.
@@ -249,7 +249,7 @@ impl Setting {
         name: &str,
         changes: &[Change],
         default: &DockOptions,
-    ) -> Result<Self, SearchError> {
+    ) -> Result<Self, Error> {
         let mut options = default.clone();
         for change in changes {
             options = change.apply(&options)?;
@@ -283,12 +283,12 @@ pub struct Planned {
 /// machine's speed, too.
 ///
 /// # Errors
-/// [`SearchError::Option`] when the reference is out of range.
+/// [`Error`] when the reference is out of range.
 pub fn settings(
     default: &DockOptions,
     planned: Planned,
     parameters: &[Parameter],
-) -> Result<(Vec<Setting>, Vec<Refused>), SearchError> {
+) -> Result<(Vec<Setting>, Vec<Refused>), Error> {
     let count = default.search.rotations;
     let with = |parameter, name, rotations| {
         let change = Change::new("rotations", rotations);

@@ -9,15 +9,15 @@ use crate::tradeoff::front::front;
 use crate::tradeoff::measured::{FIRST, Measured, NativeRanks, Tradeoff};
 use crate::tradeoff::settings::{Parameter, Planned, Refused, Setting, settings};
 use knotdock::dock::outcome::DockOutcome;
-use knotdock::dock::pair::{Pair, PairError, PreparedPair, Preparer};
+use knotdock::dock::pair::{Pair, PreparedPair, Preparer};
 use knotdock::dock::plan::DockPlan;
 use knotdock::dock::run::dock;
-use knotdock::error::SearchError;
 use knotdock::evaluate::{Criterion, Evaluator};
 use knotdock::options::DockOptions;
 use knotdock::options::Precision;
 use knotdock::progress::Progress;
 use knotdock::rank::cluster::RigidBody;
+use knotdock_structures::Error;
 
 /// Receiver of a sweep's progress.
 pub trait SweepProgress: Progress {
@@ -35,7 +35,7 @@ pub trait SweepProgress: Progress {
 /// with.
 ///
 /// # Errors
-/// [`PairError`] when the default or the reference cannot be run. Other settings that cannot are reported with the
+/// [`Error`] when the default or the reference cannot be run. Other settings that cannot are reported with the
 /// reason.
 pub fn sweep(
     pair: Pair,
@@ -44,7 +44,7 @@ pub fn sweep(
     parameters: &[Parameter],
     evaluator: Option<&Evaluator>,
     progress: &dyn SweepProgress,
-) -> Result<Tradeoff, PairError> {
+) -> Result<Tradeoff, Error> {
     let mut preparer = Preparer::new(pair, default, &first);
     let body = RigidBody::new(&first.points);
     let mut refused: Vec<Refused> = Vec::new();
@@ -118,7 +118,7 @@ fn ready(
     parameters: &[Parameter],
     preparer: &mut Preparer,
     mut refuse: impl FnMut(Refused),
-) -> Result<Vec<(Setting, PreparedPair)>, PairError> {
+) -> Result<Vec<(Setting, PreparedPair)>, Error> {
     let planned = Planned {
         spacing: first.plan.spacing,
         refined: first.plan.refined(),
@@ -157,7 +157,7 @@ impl Run<'_> {
         reference: &Reference,
         body: &RigidBody,
         radius: f64,
-    ) -> Result<(), SearchError> {
+    ) -> Result<(), Error> {
         let scores = exact_scores(self.plan, &reference.poses)?;
         let compared = compare(&scores, &reference.scores);
         self.measured.definition_rms = compared.rms;
@@ -173,11 +173,14 @@ fn run(
     prepared: &PreparedPair,
     evaluator: Option<&Evaluator>,
     progress: &dyn Progress,
-) -> Result<(Measured, Vec<Pose>), SearchError> {
+) -> Result<(Measured, Vec<Pose>), Error> {
     let plan = &prepared.plan;
     let outcome = dock(plan, &prepared.points, progress)?;
     if !outcome.error.worst.is_finite() {
-        return Err(SearchError::NothingScores);
+        return Err(
+            Error::input("no pose scores anything, so errors have no scale")
+                .help("use a finer --spacing or --resolution"),
+        );
     }
     let native = evaluator.map(|evaluator| native_ranks(evaluator, &outcome));
     let first = outcome.poses.iter().take(FIRST);
@@ -205,7 +208,7 @@ fn run(
 }
 
 /// The exact sum of a plan's score at some poses.
-fn exact_scores(plan: &DockPlan, poses: &[Pose]) -> Result<Vec<f64>, SearchError> {
+fn exact_scores(plan: &DockPlan, poses: &[Pose]) -> Result<Vec<f64>, Error> {
     let scorer = plan.exact_scorer()?;
     Ok(poses
         .par_iter()

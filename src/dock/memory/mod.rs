@@ -4,11 +4,12 @@ pub mod process;
 pub mod stages;
 
 use crate::dock::scene::Scene;
-use crate::error::SearchError;
 use crate::memory_size::named;
+use crate::memory_size::{as_size, in_words};
 use crate::options::{DockOptions, EngineChoice, KernelOptions};
 use crate::pose_space::PoseSpace;
 use knotdock_scoring::engine::Plan;
+use knotdock_structures::Error;
 use stages::{MemoryStage, Sizes};
 
 /// Bytes that rotations in flight may take of a graphics processor's memory, which may be the computer's own.
@@ -33,13 +34,13 @@ impl MemoryPlan {
     /// The memory of a run of `engine`, within the limit of the options, of which `refined` poses are refined.
     ///
     /// # Errors
-    /// [`SearchError::Memory`] where not one rotation fits, with the finest grid that would.
+    /// [`Error`] where not one rotation fits, with the finest grid that would.
     pub fn new(
         scene: &Scene,
         engine: &Plan,
         options: &DockOptions,
         (space, refined): (&PoseSpace, usize),
-    ) -> Result<Self, SearchError> {
+    ) -> Result<Self, Error> {
         let sizes = Sizes::new(scene, engine, options, (space, refined));
         let allowed = options.machine.memory;
         let needed = sizes.peak(1);
@@ -60,7 +61,7 @@ impl MemoryPlan {
             let needed = graphics + sizes.peak(rotations);
             allowed.is_none_or(|allowed| needed <= allowed)
         };
-        let threads = options.machine.threads.count().min(MAX_IN_FLIGHT);
+        let threads = options.machine.thread_count().min(MAX_IN_FLIGHT);
         let most_in_flight = most(threads, fits);
         Ok(Self {
             sizes,
@@ -125,7 +126,7 @@ fn too_little(
     options: &DockOptions,
     refining: (&PoseSpace, usize),
     (needed, allowed): (u64, u64),
-) -> SearchError {
+) -> Error {
     let fits = least_coarse(|step| {
         let coarser = coarser(options, step, scene.angstrom);
         let plan = scene.engine_plan(&coarser).ok()?;
@@ -137,21 +138,36 @@ fn too_little(
             ..coarser.kernel
         })
     });
-    SearchError::Memory {
-        needed,
-        allowed,
-        spacing: fits.as_ref().and_then(|coarser| coarser.spacing),
-        shows_little: fits
-            .as_ref()
-            .is_some_and(|coarser| coarser.resolution > 3.0 * options.kernel.resolution),
-        resolution: fits
-            .as_ref()
-            .map(|coarser| coarser.resolution)
-            .filter(|&resolution| resolution > options.kernel.resolution),
-        pass_length: fits
-            .and_then(|coarser| coarser.pass_length)
-            .filter(|&length| Some(length) > options.kernel.pass_length),
-    }
+    let needed_size = as_size(needed);
+    let far = "check for atoms or parts far from the rest";
+    let remedy = match fits {
+        None => format!("allow more with --memory {needed_size}, or {far}"),
+        Some(coarser) => {
+            let kernel = &options.kernel;
+            let mut words = format!("--spacing {}", coarser.spacing.unwrap_or_default());
+            if coarser.resolution > kernel.resolution {
+                words += &format!(" --resolution {}", coarser.resolution);
+            }
+            if let Some(length) = coarser.pass_length
+                && Some(length) > kernel.pass_length
+            {
+                words += &format!(" --pass-length {length}");
+            }
+            if coarser.resolution > 3.0 * kernel.resolution {
+                format!(
+                    "allow more with --memory {needed_size}, or {far}; {words} would fit, but shows little"
+                )
+            } else {
+                format!("use {words}, allow more with --memory {needed_size}, or {far}")
+            }
+        }
+    };
+    Error::input(format!(
+        "the run needs {} of memory, and {} are allowed",
+        in_words(needed),
+        in_words(allowed)
+    ))
+    .help(remedy)
 }
 
 /// The first of 60 ever coarser steps that fits, found by halving.

@@ -4,6 +4,8 @@
 //! device. A file that is there with the same content stays. One that differs is replaced if the run's records show
 //! that nobody has changed it, or on request. What is added to a run is listed in its `added.json`.
 
+use crate::output::files::file_error;
+use knotdock_structures::Error;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io;
@@ -19,7 +21,7 @@ use super::lock::Lock;
 use super::own_files::{ADDED, ENSEMBLE, OwnFiles, is_of_us, is_run, name_of};
 use super::seal::REPORT;
 use super::staging::{Made, Stage, locked};
-use super::whole_file::{FileError, is_link, leftovers, parent, to_json, write_whole};
+use super::whole_file::{is_link, leftovers, parent, to_json, write_whole};
 
 /// Files that are being added.
 #[derive(Debug)]
@@ -39,13 +41,13 @@ impl Addition {
     /// Files for a folder. Where it lies in the directory of `run`, that is locked.
     ///
     /// # Errors
-    /// [`FileError`] where the folder is a link or cannot be made, and where another command writes to the run.
-    pub fn open(folder: &Path, run: Option<&Path>) -> Result<Self, FileError> {
+    /// [`Error`] where the folder is a link or cannot be made, and where another command writes to the run.
+    pub fn open(folder: &Path, run: Option<&Path>) -> Result<Self, Error> {
         let plain: PathBuf = folder.components().collect();
         if is_link(&plain) {
-            return Err(FileError::link(folder));
+            return Err(file_error::link(folder));
         }
-        let unwritable = |source: io::Error| FileError::unwritable(folder, source);
+        let unwritable = |source: io::Error| file_error::unwritable(folder, source);
         let run = run.filter(|run| match (resolved(&plain), resolved(run)) {
             (Some(folder), Some(run)) => folder.starts_with(run),
             _ => false,
@@ -78,9 +80,9 @@ impl Addition {
     /// Moves the files into their places. With `force` those that are there are replaced, though they were edited.
     ///
     /// # Errors
-    /// [`FileError`]; of files that must not be replaced before anything is moved.
-    pub fn place(mut self, force: bool) -> Result<(), FileError> {
-        let failed = |source| FileError::writing(&self.folder, source);
+    /// [`Error`]; of files that must not be replaced before anything is moved.
+    pub fn place(mut self, force: bool) -> Result<(), Error> {
+        let failed = |source| file_error::writing(&self.folder, source);
         let new = self.stage.folder();
         disk::sync_tree(new).map_err(failed)?;
         let mut own = OwnFiles::default();
@@ -123,7 +125,7 @@ impl Addition {
                     Err(_) => disk::rename_new(from, to),
                 })
                 .and_then(|()| disk::sync(to.parent().unwrap_or(&self.folder)));
-            moved.map_err(|source| FileError::writing(to, source))?;
+            moved.map_err(|source| file_error::writing(to, source))?;
         }
         self.made.0.clear();
         Ok(())
@@ -131,11 +133,11 @@ impl Addition {
 
     /// Adds files to the list of those that were added to a run. It comes before them: a file that is listed and not
     /// there does no harm.
-    fn note(&self, run: &Path, added: BTreeMap<String, String>) -> Result<(), FileError> {
+    fn note(&self, run: &Path, added: BTreeMap<String, String>) -> Result<(), Error> {
         let path = run.join(ADDED);
         if path.symlink_metadata().is_ok() && !is_of_us(&path) {
             let message = "this is no list of what was added to a run";
-            return Err(FileError::refused(&path, message, "move it away"));
+            return Err(file_error::refused(&path, message, "move it away"));
         }
         let earlier = read_bounded_file(&path, MAX_RECORD).unwrap_or_default();
         let earlier: Value = serde_json::from_slice(&earlier).unwrap_or_default();
@@ -149,18 +151,18 @@ impl Addition {
         let written = self.stage.folder().join(ADDED);
         disk::sync(&written)
             .and_then(|()| disk::rename(&written, &path))
-            .map_err(|source| FileError::writing(&path, source))
+            .map_err(|source| file_error::writing(&path, source))
     }
 }
 
 /// Writes a file that the user named, whole; into a run's directory as an addition. What ended commands left there.
 ///
 /// # Errors
-/// [`FileError`].
+/// [`Error`].
 pub fn write_named(
     path: &Path,
     fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
-) -> Result<Vec<PathBuf>, FileError> {
+) -> Result<Vec<PathBuf>, Error> {
     let folder = parent(path);
     let (Some(name), true) = (path.file_name(), is_run(folder) && !is_link(path)) else {
         return write_whole(path, fill).map(|()| Vec::new());
@@ -174,11 +176,11 @@ pub fn write_named(
 /// Copies files into a run's directory as additions.
 ///
 /// # Errors
-/// [`FileError`].
-pub fn add_files(run: &Path, files: &[PathBuf]) -> Result<(), FileError> {
+/// [`Error`].
+pub fn add_files(run: &Path, files: &[PathBuf]) -> Result<(), Error> {
     let addition = Addition::open(run, Some(run))?;
     for path in files {
-        let mut file = File::open(path).map_err(|source| FileError::reading(path, source))?;
+        let mut file = File::open(path).map_err(|source| file_error::reading(path, source))?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
         addition
             .stage
@@ -202,20 +204,20 @@ fn resolved(path: &Path) -> Option<PathBuf> {
 }
 
 /// Whether a file of a checksum is to be moved to a place: not where it is there already.
-fn is_to_move(to: &Path, checksum: &str, may_replace: bool) -> Result<bool, FileError> {
+fn is_to_move(to: &Path, checksum: &str, may_replace: bool) -> Result<bool, Error> {
     let Ok(there) = to.symlink_metadata() else {
         return Ok(true);
     };
     if !there.is_file() {
-        return Err(FileError::refused(
+        return Err(file_error::refused(
             to,
             format!("{} is there and is no regular file", to.display()),
             "move it away, or choose another directory with -o",
         ));
     }
-    let found = sha256_of_file(to).map_err(|source| FileError::unwritable(to, source))?;
+    let found = sha256_of_file(to).map_err(|source| file_error::unwritable(to, source))?;
     if found != checksum && !may_replace {
-        return Err(FileError::refused(
+        return Err(file_error::refused(
             to,
             format!("{} is there and is not what would be written", to.display()),
             "move the file away, choose another directory with -o, or pass --force to replace it",
@@ -229,7 +231,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    fn add(folder: &Path, text: &str, force: bool) -> Result<(), FileError> {
+    fn add(folder: &Path, text: &str, force: bool) -> Result<(), Error> {
         let addition = Addition::open(folder, None)?;
         let stage = addition.stage();
         stage.write("rank_0001.pdb", |file| file.write_all(text.as_bytes()))?;

@@ -1,12 +1,13 @@
 //! A file that grows by whole entries.
 
+use crate::output::files::file_error;
+use knotdock_structures::Error;
 use std::fs::File;
 use std::io::{self, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
 use super::disk;
 use super::fault::point;
-use super::whole_file::FileError;
 
 /// A file to which entries are appended, each to the device before the next.
 ///
@@ -24,9 +25,9 @@ impl AppendedFile {
     /// followed.
     ///
     /// # Errors
-    /// [`FileError`] where it cannot be opened or cut.
-    pub fn open(path: &Path, length: u64) -> Result<Self, FileError> {
-        let failed = |source| FileError::unwritable(path, source);
+    /// [`Error`] where it cannot be opened or cut.
+    pub fn open(path: &Path, length: u64) -> Result<Self, Error> {
+        let failed = |source| file_error::unwritable(path, source);
         point("open", path).map_err(failed)?;
         let made = disk::create(path);
         let mut file = match made {
@@ -63,15 +64,15 @@ impl AppendedFile {
     /// Appends an entry, to the device; where it begins and ends. One that cannot be written whole is taken back.
     ///
     /// # Errors
-    /// [`FileError`].
-    pub fn append(&mut self, entry: &[u8]) -> Result<(u64, u64), FileError> {
+    /// [`Error`].
+    pub fn append(&mut self, entry: &[u8]) -> Result<(u64, u64), Error> {
         let written = self.write(entry);
         if written.is_err() {
             // What cannot be taken back now is cut off when the file is opened again.
             let _ = self.file.set_len(self.length);
             let _ = self.file.seek(SeekFrom::Start(self.length));
         }
-        written.map_err(|source| FileError::writing(&self.path, source))?;
+        written.map_err(|source| file_error::writing(&self.path, source))?;
         let start = self.length;
         self.length += entry.len() as u64;
         Ok((start, self.length))

@@ -4,6 +4,8 @@
 //! receptor's frame, in the shortest digits that read back to the same f64. Vertices are those that were docked:
 //! coincident ones of the files are one, and triangles that faced inward are turned.
 
+use crate::output::files::file_error;
+use knotdock_structures::Error;
 use std::io;
 use std::path::Path;
 
@@ -13,7 +15,7 @@ use knotdock_structures::mesh::Mesh;
 use crate::geometry::surface::Surface as ComputedSurface;
 use crate::output::files::complexes::file_name;
 use crate::output::files::disk;
-use crate::output::files::whole_file::{FileError, write_new};
+use crate::output::files::whole_file::write_new;
 use crate::output::records::program::VERSION;
 use crate::output::tables::fields::number;
 use crate::output::tables::poses::PoseRow;
@@ -49,22 +51,22 @@ impl<'a> From<&'a ComputedSurface> for Surface<'a> {
 /// rows.
 ///
 /// # Errors
-/// [`FileError`] when the folder cannot be made, or a file is there or cannot be written.
+/// [`Error`] when the folder cannot be made, or a file is there or cannot be written.
 pub fn write_assemblies(
     receptor: Surface,
     ligand: Surface,
     rows: &[PoseRow],
     folder: &Path,
-) -> Result<Vec<String>, FileError> {
+) -> Result<Vec<String>, Error> {
     if !rows.is_empty() {
-        disk::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
+        disk::create_dir_all(folder).map_err(|source| file_error::unwritable(folder, source))?;
     }
     rows.iter()
         .map(|row| {
             let name = file_name(row.rank, "obj");
             let path = folder.join(&name);
             write_new(&path, |file| write_assembly(file, receptor, ligand, row))
-                .map_err(|source| FileError::writing(&path, source))?;
+                .map_err(|source| file_error::writing(&path, source))?;
             Ok(name)
         })
         .collect()

@@ -1,5 +1,7 @@
 //! Complexes: the receptor as it was and the ligand in its place, one file a rank; of rings all copies.
 
+use crate::output::files::file_error;
+use knotdock_structures::Error;
 use std::io;
 use std::path::Path;
 
@@ -9,7 +11,7 @@ use knotdock_structures::molecule::{
 };
 
 use crate::output::files::disk;
-use crate::output::files::whole_file::{FileError, write_new};
+use crate::output::files::whole_file::write_new;
 use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
@@ -38,7 +40,7 @@ pub fn file_names(rank: usize) -> [String; 3] {
 /// `note` follows the rank in the remarks.
 ///
 /// # Errors
-/// [`FileError`] when the folder cannot be made, a file is there or cannot be written, or a row's pose is not one of
+/// [`Error`] when the folder cannot be made, a file is there or cannot be written, or a row's pose is not one of
 /// such a ring.
 pub fn write_complexes(
     [receptor, ligand]: [&Molecule; 2],
@@ -46,9 +48,9 @@ pub fn write_complexes(
     rows: &[PoseRow],
     note: &str,
     (folder, wanted): (&Path, Option<Format>),
-) -> Result<Written, FileError> {
+) -> Result<Written, Error> {
     if !rows.is_empty() {
-        disk::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
+        disk::create_dir_all(folder).map_err(|source| file_error::unwritable(folder, source))?;
     }
     let poses = |row: &PoseRow| {
         let images = arrangement.images(&row.pose);
@@ -86,14 +88,14 @@ pub fn write_complexes(
             chains = Some(map.map_err(io_error)?);
             Ok(())
         });
-        written.map_err(|source| FileError::writing(&path, source))?;
+        written.map_err(|source| file_error::writing(&path, source))?;
         names.push(name);
     }
     let chains = match chains {
         Some(chains) => chains,
         // No complex was requested: the names are what they would have been.
         None => write_complex(&mut io::sink(), format, &with(receptor, &unplaced), &[])
-            .map_err(|error| FileError::writing(folder, io_error(error)))?,
+            .map_err(|error| file_error::writing(folder, io_error(error)))?,
     };
     Ok(Written { names, chains })
 }
@@ -101,13 +103,13 @@ pub fn write_complexes(
 /// What a pose places about the receptor: the ligand, or of a ring all copies but the receptor.
 ///
 /// # Errors
-/// [`FileError`] where the pose is not one of such a ring.
+/// [`Error`] where the pose is not one of such a ring.
 pub(crate) fn placed_copies(
     ligand: &Molecule,
     arrangement: Arrangement,
     row: &PoseRow,
     folder: &Path,
-) -> Result<Vec<Molecule>, FileError> {
+) -> Result<Vec<Molecule>, Error> {
     let images = arrangement.images(&row.pose);
     let poses = images.ok_or_else(|| no_ring(arrangement, row, folder))?;
     let moved = |pose: &Pose| ligand.map_positions(|position| pose.apply(position));
@@ -120,13 +122,13 @@ fn with<'a>(receptor: &'a Molecule, others: &'a [Molecule]) -> Vec<&'a Molecule>
 }
 
 /// The error of a row whose pose forms no ring.
-fn no_ring(arrangement: Arrangement, row: &PoseRow, folder: &Path) -> FileError {
+fn no_ring(arrangement: Arrangement, row: &PoseRow, folder: &Path) -> Error {
     let error = io::Error::other(format!(
         "the pose of rank {} forms no ring{}",
         row.rank,
         arrangement.suffix()
     ));
-    FileError::writing(folder, error)
+    file_error::writing(folder, error)
 }
 
 /// Remarks of a complex: its origin, and how its ligand, or each copy of a ring from the one before it, was moved.

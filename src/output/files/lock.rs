@@ -1,11 +1,12 @@
 //! A lock: one command at a time writes to a place. The system lets go of it however the process ends.
 
+use crate::output::files::file_error;
+use knotdock_structures::Error;
 use std::fs::{self, File, TryLockError};
 use std::io;
 use std::path::{Path, PathBuf};
 
 use super::disk;
-use super::whole_file::FileError;
 
 /// A lock file that this process holds. Dropped, it goes.
 ///
@@ -21,11 +22,11 @@ impl Lock {
     /// Takes the lock of a path, at which there is no file or an empty one.
     ///
     /// # Errors
-    /// [`FileError`] where another process holds it, where something else has the name, and where no file can be made.
-    pub fn take(path: &Path) -> Result<Self, FileError> {
+    /// [`Error`] where another process holds it, where something else has the name, and where no file can be made.
+    pub fn take(path: &Path) -> Result<Self, Error> {
         // The process that holds the lock may remove the file at any moment.
         const ATTEMPTS: usize = 16;
-        let failed = |source| FileError::unwritable(path, source);
+        let failed = |source| file_error::unwritable(path, source);
         for _ in 0..ATTEMPTS {
             let (file, is_new) = match disk::create(path) {
                 Ok(file) => (file, true),
@@ -75,12 +76,12 @@ fn try_lock(file: &File) -> Result<(), TryLockError> {
     file.try_lock()
 }
 
-fn in_the_way(path: &Path) -> FileError {
-    FileError::refused(path, "this is no lock of knotdock's", "move it away")
+fn in_the_way(path: &Path) -> Error {
+    file_error::refused(path, "this is no lock of knotdock's", "move it away")
 }
 
-fn held(path: &Path, may_be_left: bool) -> FileError {
-    FileError::refused(
+fn held(path: &Path, may_be_left: bool) -> Error {
+    file_error::refused(
         path,
         "another command is writing there",
         match may_be_left {

@@ -7,6 +7,7 @@ pub mod checksum;
 pub mod complexes;
 mod disk;
 mod fault;
+pub mod file_error;
 pub mod folder;
 pub mod lock;
 pub mod model_file;

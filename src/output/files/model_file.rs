@@ -1,12 +1,14 @@
 //! Many complexes in one file, `ensemble.pdb` or `ensemble.cif`: one model a rank, for viewers that play them.
 
+use crate::output::files::file_error;
+use knotdock_structures::Error;
 use std::path::Path;
 
 use knotdock_structures::molecule::{Format, ModelWriter, Molecule, complex_format};
 
 use crate::output::files::complexes::{io_error, placed_copies};
 use crate::output::files::disk;
-use crate::output::files::whole_file::{FileError, write_new};
+use crate::output::files::whole_file::write_new;
 use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
@@ -31,8 +33,8 @@ pub fn model_file_name(format: Format) -> String {
 /// inputs was mmCIF or a complex does not fit the PDB format. Returns the file's name.
 ///
 /// # Errors
-/// [`FileError`] when the file cannot be written, or a row's pose is not one of such a ring.
-pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, FileError> {
+/// [`Error`] when the file cannot be written, or a row's pose is not one of such a ring.
+pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Error> {
     let complex =
         |pair: &PosedPair| placed_copies(pair.molecules[1], pair.arrangement, &pair.row, folder);
     // Placed molecules are made twice: all at once may not fit into the memory.
@@ -47,7 +49,7 @@ pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Fi
     }
     let name = model_file_name(format);
     let path = folder.join(&name);
-    disk::create_dir_all(folder).map_err(|source| FileError::unwritable(folder, source))?;
+    disk::create_dir_all(folder).map_err(|source| file_error::unwritable(folder, source))?;
     let numbered = pairs.iter().zip(1..);
     let lines = numbered.map(|(pair, model)| format!("model {model} is rank {}", pair.row.rank));
     let remarks: Vec<String> = [format!("knotdock {VERSION}")]
@@ -72,6 +74,6 @@ pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Fi
         }
         models.finish().map_err(io_error)
     });
-    written.map_err(|source| FileError::writing(&path, source))?;
+    written.map_err(|source| file_error::writing(&path, source))?;
     failed.map_or(Ok(name), Err)
 }

@@ -1,11 +1,12 @@
 //! A molecule as it was read, written as a structure file of its own.
 
+use knotdock_structures::Error;
 use std::path::Path;
 
 use knotdock_structures::molecule::{Format, Molecule, write_renamed};
 
 use crate::output::files::complexes::io_error;
-use crate::output::files::whole_file::{FileError, write_whole};
+use crate::output::files::whole_file::write_whole;
 use crate::output::records::program::VERSION;
 
 /// The format that a file's name asks for: `.pdb` or `.ent`, `.cif` or `.mmcif`; nothing for other endings.
@@ -21,8 +22,8 @@ pub fn format_of_name(path: &Path) -> Option<Format> {
 /// Writes the atoms that were kept, whole or not at all. Chains keep their names where the format can hold them.
 ///
 /// # Errors
-/// [`FileError`].
-pub fn write(path: &Path, format: Format, molecule: &Molecule) -> Result<(), FileError> {
+/// [`Error`].
+pub fn write(path: &Path, format: Format, molecule: &Molecule) -> Result<(), Error> {
     let remark = format!(
         "knotdock {VERSION}, what was read of {}",
         molecule.report.file

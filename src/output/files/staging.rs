@@ -5,6 +5,8 @@
 //! all of it is on the device. An older run is exchanged for it at one stroke. Where the system cannot exchange, the
 //! older one goes aside to `.NAME.knotdock-old` first, and the next command puts it back if nothing came after.
 
+use crate::output::files::file_error;
+use knotdock_structures::Error;
 use std::collections::{BTreeMap, BTreeSet};
 use std::io;
 use std::path::{Path, PathBuf};
@@ -13,9 +15,7 @@ use super::checksum::sha256_of_file;
 use super::disk;
 use super::lock::Lock;
 use super::own_files::{MEMBERS, is_of_us, is_record, is_run, name_of, not_own};
-use super::whole_file::{
-    FileError, beside, is_link, leftovers, lock_beside, make_beside, parent, write_new,
-};
+use super::whole_file::{beside, is_link, leftovers, lock_beside, make_beside, parent, write_new};
 
 /// A folder that this process alone writes to, until it takes its place. Dropped before that, it goes.
 #[derive(Debug)]
@@ -29,13 +29,13 @@ pub struct Stage {
 
 impl Stage {
     /// A new folder beside a place.
-    pub(super) fn beside(place: &Path, shown: &Path) -> Result<Self, FileError> {
+    pub(super) fn beside(place: &Path, shown: &Path) -> Result<Self, Error> {
         let made = make_beside(place, disk::create_dir);
-        let (_, path) = made.map_err(|source| FileError::unwritable(shown, source))?;
+        let (_, path) = made.map_err(|source| file_error::unwritable(shown, source))?;
         Ok(Self {
             folder: path
                 .keep()
-                .map_err(|error| FileError::unwritable(shown, error))?,
+                .map_err(|error| file_error::unwritable(shown, error))?,
             shown: shown.to_owned(),
             is_kept: false,
         })
@@ -49,23 +49,23 @@ impl Stage {
     /// Writes a file.
     ///
     /// # Errors
-    /// [`FileError`] when it cannot be written, under the name that it would have had.
+    /// [`Error`] when it cannot be written, under the name that it would have had.
     pub fn write(
         &self,
         name: &str,
         fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
-    ) -> Result<(), FileError> {
+    ) -> Result<(), Error> {
         write_new(&self.folder.join(name), fill)
-            .map_err(|source| FileError::writing(&self.shown.join(name), source))
+            .map_err(|source| file_error::writing(&self.shown.join(name), source))
     }
 
     /// SHA-256 of each file written so far, by its path from the folder with `/` between folders. The record holds them
     /// as `files`. A folder of runs has records of its own, and is left out.
     ///
     /// # Errors
-    /// [`FileError`] when one cannot be read.
-    pub fn checksums(&self) -> Result<BTreeMap<String, String>, FileError> {
-        let failed = |source| FileError::writing(&self.shown, source);
+    /// [`Error`] when one cannot be read.
+    pub fn checksums(&self) -> Result<BTreeMap<String, String>, Error> {
+        let failed = |source| file_error::writing(&self.shown, source);
         let mut checksums = BTreeMap::new();
         let files = disk::tree(&self.folder).map_err(failed)?;
         for path in files.iter().filter(|path| !path.starts_with(MEMBERS)) {
@@ -119,9 +119,9 @@ impl Staging {
     /// Makes a staging folder for a run with a record, such as `run.json`, which also shows that it can be written.
     ///
     /// # Errors
-    /// [`FileError`] when the directory holds a run and `force` is false, when it holds anything else, when another
+    /// [`Error`] when the directory holds a run and `force` is false, when it holds anything else, when another
     /// command writes to it, and when nothing can be written there.
-    pub fn open(record: &'static str, directory: &Path, force: bool) -> Result<Self, FileError> {
+    pub fn open(record: &'static str, directory: &Path, force: bool) -> Result<Self, Error> {
         let (place, made, lock) = locked(directory)?;
         if place.is_dir() && (holds_current(&place) || !is_one_device(&place, parent(&place))) {
             return Err(current(directory));
@@ -146,11 +146,11 @@ impl Staging {
     /// Moves what was written into the run's directory, in place of an older run, once it is on the device.
     ///
     /// # Errors
-    /// [`FileError`]. An older run stands then, in its place or aside; where something came to it that is not its own,
+    /// [`Error`]. An older run stands then, in its place or aside; where something came to it that is not its own,
     /// the new run stays beside it.
-    pub fn commit(mut self) -> Result<(), FileError> {
+    pub fn commit(mut self) -> Result<(), Error> {
         let (new, place) = (self.stage.folder.clone(), self.place.as_path());
-        let failed = |source| FileError::writing(&self.directory, source);
+        let failed = |source| file_error::writing(&self.directory, source);
         let there = place.symlink_metadata();
         if let Ok(there) = &there {
             disk::set_permissions(&new, there.permissions()).map_err(failed)?;
@@ -226,12 +226,12 @@ fn aside(place: &Path) -> PathBuf {
 
 /// A run's directory without links, the folders made above it, and its lock. An older run that a kill left aside is put
 /// back, or goes where a new one has come.
-pub(super) fn locked(directory: &Path) -> Result<(PathBuf, Made, Lock), FileError> {
-    let unwritable = |source: io::Error| FileError::unwritable(directory, source);
+pub(super) fn locked(directory: &Path) -> Result<(PathBuf, Made, Lock), Error> {
+    let unwritable = |source: io::Error| file_error::unwritable(directory, source);
     // Without `/` at the end, behind which a link would be followed.
     let plain: PathBuf = directory.components().collect();
     if is_link(&plain) {
-        return Err(FileError::link(directory));
+        return Err(file_error::link(directory));
     }
     let (above, name) = match plain.file_name() {
         Some(name) => (parent(&plain).to_owned(), name.to_owned()),
@@ -264,8 +264,8 @@ pub(super) fn locked(directory: &Path) -> Result<(PathBuf, Made, Lock), FileErro
 /// Puts an older run back that a kill left aside, so that its directory can be read.
 ///
 /// # Errors
-/// [`FileError`] when it cannot be put back.
-pub fn put_back(directory: &Path) -> Result<(), FileError> {
+/// [`Error`] when it cannot be put back.
+pub fn put_back(directory: &Path) -> Result<(), Error> {
     let lock = lock_beside(directory);
     if lock.symlink_metadata().is_ok() {
         // One that a kill left goes; one that is held stays, and so does whatever else has the name.
@@ -275,8 +275,8 @@ pub fn put_back(directory: &Path) -> Result<(), FileError> {
     is_aside.then(|| locked(directory)).transpose().map(drop)
 }
 
-fn current(directory: &Path) -> FileError {
-    FileError::refused(
+fn current(directory: &Path) -> Error {
+    file_error::refused(
         directory,
         "the current directory and the root of a file system cannot be the directory of a run, which is replaced as a \
          whole",
@@ -295,8 +295,8 @@ fn refuse(
     directory: &Path,
     place: &Path,
     force: bool,
-) -> Result<Option<Vec<PathBuf>>, FileError> {
-    let unreadable = |source: io::Error| FileError::unwritable(directory, source);
+) -> Result<Option<Vec<PathBuf>>, Error> {
+    let unreadable = |source: io::Error| file_error::unwritable(directory, source);
     if place.symlink_metadata().is_err() {
         return Ok(None);
     }
@@ -304,7 +304,7 @@ fn refuse(
         return Ok(None);
     }
     let refused =
-        |message: String, remedy: &str| Err(FileError::refused(directory, message, remedy));
+        |message: String, remedy: &str| Err(file_error::refused(directory, message, remedy));
     if !is_of_us(&place.join(record)) {
         return refused(
             format!("the directory is not empty and holds no run of knotdock with {record}"),
@@ -357,7 +357,7 @@ mod tests {
     use super::*;
     use std::fs;
 
-    fn run(directory: &Path, text: &str) -> Result<(), FileError> {
+    fn run(directory: &Path, text: &str) -> Result<(), Error> {
         let staging = Staging::open(RUN, directory, true)?;
         let stage = staging.stage();
         disk::create_dir(&stage.folder().join("top")).unwrap();

@@ -1,5 +1,7 @@
 //! A file whole or not at all.
 
+use crate::output::files::file_error;
+use knotdock_structures::Error;
 use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Write};
@@ -11,92 +13,6 @@ use tempfile::TempPath;
 use super::checksum::sha256_of_file;
 use super::disk;
 use super::fault::point;
-
-/// Why a file or a folder could not be read or written.
-#[derive(Debug, thiserror::Error)]
-#[error("{message}")]
-pub struct FileError {
-    path: PathBuf,
-    message: String,
-    remedy: String,
-    /// Whether the request was at fault (exit code 2) and not the disk (exit code 1).
-    is_input: bool,
-}
-
-impl FileError {
-    /// A place that cannot be made or written to.
-    pub fn unwritable(path: &Path, source: impl std::fmt::Display) -> Self {
-        Self::refused(
-            path,
-            format!("cannot write to {}: {source}", path.display()),
-            "name a place that you may write to",
-        )
-    }
-
-    /// A file that could not be written although it could be made: a full disk, for instance.
-    pub fn writing(path: &Path, source: impl std::fmt::Display) -> Self {
-        Self {
-            is_input: false,
-            ..Self::refused(
-                path,
-                format!("cannot write {}: {source}", path.display()),
-                "check the free space and the permissions there",
-            )
-        }
-    }
-
-    /// A file that the system does not give.
-    pub fn reading(path: &Path, source: impl std::fmt::Display) -> Self {
-        Self {
-            is_input: false,
-            ..Self::refused(
-                path,
-                format!("cannot read {}: {source}", path.display()),
-                "check the disk and the permissions there",
-            )
-        }
-    }
-
-    /// A file or folder that is refused, and what to do about it.
-    pub fn refused(path: &Path, message: impl Into<String>, remedy: impl Into<String>) -> Self {
-        Self {
-            path: path.to_owned(),
-            message: message.into(),
-            remedy: remedy.into(),
-            is_input: true,
-        }
-    }
-
-    /// A link where a file or a folder is to be written.
-    pub fn link(path: &Path) -> Self {
-        Self::refused(
-            path,
-            "this is a link, and nothing is written through links",
-            "name what it leads to, or another place",
-        )
-    }
-
-    /// The same with something else to know.
-    pub(super) fn and(mut self, more: impl std::fmt::Display) -> Self {
-        self.message = format!("{}; {more}", self.message);
-        self
-    }
-
-    /// Remedy for the user.
-    pub fn remedy(&self) -> &str {
-        &self.remedy
-    }
-
-    /// The file or directory in question.
-    pub fn path(&self) -> &Path {
-        &self.path
-    }
-
-    /// Whether the request was at fault (exit code 2) and not the disk (exit code 1).
-    pub fn is_input(&self) -> bool {
-        self.is_input
-    }
-}
 
 /// Whether a name stands for something that is written to in place, such as a device or a pipe.
 ///
@@ -194,13 +110,13 @@ impl StagedFile {
     /// as it stands. A file that is replaced leaves its mode.
     ///
     /// # Errors
-    /// [`FileError`] when the place is a link, when the file cannot be made, and when writing to it fails.
+    /// [`Error`] when the place is a link, when the file cannot be made, and when writing to it fails.
     pub fn write(
         path: &Path,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<Self, FileError> {
+    ) -> Result<Self, Error> {
         if is_link(path) {
-            return Err(FileError::link(path));
+            return Err(file_error::link(path));
         }
         if is_stream(path) {
             write_in_place(path, fill)?;
@@ -220,11 +136,11 @@ impl StagedFile {
     pub fn own(
         path: &Path,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-    ) -> Result<Self, FileError> {
+    ) -> Result<Self, Error> {
         let there = path.symlink_metadata().ok();
         if there.as_ref().is_some_and(|found| !found.is_file()) {
             let message = format!("{} is there and is no regular file", path.display());
-            return Err(FileError::refused(
+            return Err(file_error::refused(
                 path,
                 message,
                 "move it away, or choose another place",
@@ -232,7 +148,7 @@ impl StagedFile {
         }
         let replaces = there.is_some();
         let (file, temporary) = make_beside(path, disk::create)
-            .map_err(|source| FileError::unwritable(path, source))?;
+            .map_err(|source| file_error::unwritable(path, source))?;
         let mut buffer = BufWriter::new(file);
         let written = fill(&mut buffer).and_then(|()| {
             point("write", path)?;
@@ -242,7 +158,7 @@ impl StagedFile {
             }
             disk::sync(&temporary)
         });
-        written.map_err(|source| FileError::writing(path, source))?;
+        written.map_err(|source| file_error::writing(path, source))?;
         Ok(Self {
             place: path.to_owned(),
             replaces,
@@ -253,12 +169,12 @@ impl StagedFile {
     /// Whether a file with the same content is in its place already.
     ///
     /// # Errors
-    /// [`FileError`] where one of them cannot be read.
-    pub fn is_there(&self) -> Result<bool, FileError> {
+    /// [`Error`] where one of them cannot be read.
+    pub fn is_there(&self) -> Result<bool, Error> {
         let (Some(file), true) = (&self.file, self.replaces) else {
             return Ok(false);
         };
-        let failed = |source| FileError::reading(&self.place, source);
+        let failed = |source| file_error::reading(&self.place, source);
         let sum = sha256_of_file(file).map_err(failed)?;
         Ok(sha256_of_file(&self.place).map_err(failed)? == sum)
     }
@@ -266,8 +182,8 @@ impl StagedFile {
     /// Puts the file into its place, at one stroke.
     ///
     /// # Errors
-    /// [`FileError`].
-    pub fn place(self) -> Result<(), FileError> {
+    /// [`Error`].
+    pub fn place(self) -> Result<(), Error> {
         let Some(file) = self.file else {
             return Ok(());
         };
@@ -281,7 +197,7 @@ impl StagedFile {
                 let _ = file.keep();
                 disk::sync(parent(&self.place))
             })
-            .map_err(|source| FileError::writing(&self.place, source))
+            .map_err(|source| file_error::writing(&self.place, source))
     }
 }
 
@@ -292,7 +208,7 @@ impl StagedFile {
 pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), FileError> {
+) -> Result<(), Error> {
     StagedFile::write(path, fill)?.place()
 }
 
@@ -311,15 +227,15 @@ pub(super) fn write_new(
 fn write_in_place(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
-) -> Result<(), FileError> {
+) -> Result<(), Error> {
     let file = File::options()
         .append(true)
         .open(path)
-        .map_err(|source| FileError::unwritable(path, source))?;
+        .map_err(|source| file_error::unwritable(path, source))?;
     let mut buffer = BufWriter::new(file);
     fill(&mut buffer)
         .and_then(|()| buffer.flush())
-        .map_err(|source| FileError::writing(path, source))
+        .map_err(|source| file_error::writing(path, source))
 }
 
 /// The folder of a file.

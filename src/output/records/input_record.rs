@@ -1,5 +1,6 @@
 //! Input files as a run records them: where they are and how to know them again.
 
+use knotdock_structures::Error;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -173,6 +174,23 @@ impl NativeRecord {
             Self::Complex(complex) => vec![complex],
             Self::Partners { receptor, ligand } => vec![receptor, ligand],
         }
+    }
+}
+
+impl From<InputRecordError> for Error {
+    fn from(error: InputRecordError) -> Self {
+        let remedy = match &error {
+            InputRecordError::Read { .. } => {
+                "put the file where the run found it, or beside the directory of the run"
+            }
+            InputRecordError::Stream { .. } => {
+                "dock again from a file, or put what was read under that name beside the directory of the run"
+            }
+            InputRecordError::Changed { .. } => {
+                "put back the file that the run was made from, or dock again"
+            }
+        };
+        Self::input(&error).at(error.path()).help(remedy)
     }
 }
 

@@ -1,5 +1,6 @@
 //! Reading `poses.csv`, and any table with its columns for the rank and the pose.
 
+use knotdock_structures::Error;
 use std::io;
 use std::path::{Path, PathBuf};
 
@@ -253,6 +254,15 @@ fn place_of(
         path: path.to_owned(),
         column,
     })
+}
+
+impl From<PoseTableError> for Error {
+    fn from(error: PoseTableError) -> Self {
+        Self::input(&error)
+            .at(error.path())
+            .on_line(error.line())
+            .help(error.remedy())
+    }
 }
 
 #[cfg(test)]

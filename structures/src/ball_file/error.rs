@@ -130,3 +130,14 @@ impl BallFileErrorKind {
         Self::Number { what, value }
     }
 }
+
+impl From<BallFileError> for crate::Error {
+    fn from(error: BallFileError) -> Self {
+        let line = error.line.and_then(|line| u64::try_from(line).ok());
+        let refused = Self::input(&error).on_line(line).help(error.remedy());
+        match Some(error.path.as_path()) {
+            Some(file) => refused.at(file),
+            None => refused,
+        }
+    }
+}

@@ -3,15 +3,15 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use crate::messages::suggestions::first_paragraph;
 use crate::shards::record::RECORD;
 use crate::shards::{ATTEMPTS, POSES, SHARDS, Shard};
 use crate::tables::batch_results::RESULTS;
 use crate::tables::pair_table::{PairRow, read_pairs};
 use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches, Parser};
-use knotdock::options::definition::names_file;
+use clap::{CommandFactory, FromArgMatches, Parser, ValueHint};
+use knotdock::options::definition::Form;
 use knotdock::options::option_named;
-use knotdock::options::text::first_paragraph;
 use knotdock::output::files::checksum::sha256;
 use knotdock::output::files::seal::REPORT;
 use knotdock::plain_path::plain_path;
@@ -22,8 +22,8 @@ use crate::arguments::program::with_negative_numbers;
 use crate::commands::dock::{Dock, PLACE, refusing_recorded};
 use crate::inputs::bodies::spec_of;
 use crate::inputs::molecules::label;
-use crate::messages::failure::Failure;
 use crate::messages::suggestions;
+use knotdock_structures::Error;
 
 /// One pair's command line.
 #[derive(Parser, Debug)]
@@ -63,7 +63,7 @@ pub fn pairs(
     shard: Shard,
     directory: &Path,
     options: &[String],
-) -> Result<Pairs, Failure> {
+) -> Result<Pairs, Error> {
     let folder = table.parent().unwrap_or(Path::new(""));
     let mut names: HashMap<String, u64> = HashMap::new();
     check_options(options)?;
@@ -73,10 +73,10 @@ pub fn pairs(
     let sums: String = rows.iter().map(PairRow::checksum).collect();
     let pairs = (1..).zip(rows).map(|(index, row)| {
             let wrong = |message: String, remedy: &str| {
-                Failure::input(message)
+                Error::input(message)
                     .at(table)
                     .on_line(Some(row.line))
-                    .remedy(remedy)
+                    .help(remedy)
             };
             let name = match row.name.as_str() {
                 "" => format!("{}_{}", part(&row.receptor)?, partner(&row, symmetry)?),
@@ -122,7 +122,7 @@ pub fn pairs(
                 cost,
             }))
         });
-    let pairs: Result<Vec<Pair>, Failure> = pairs.filter_map(Result::transpose).collect();
+    let pairs: Result<Vec<Pair>, Error> = pairs.filter_map(Result::transpose).collect();
     Ok(Pairs {
         own: pairs?,
         total,
@@ -141,7 +141,9 @@ fn pair_command() -> clap::Command {
 fn names_files(column: &str) -> bool {
     let command = pair_command();
     let mut arguments = command.get_arguments();
-    arguments.any(|argument| argument.get_id() == column && names_file(argument))
+    arguments.any(|argument| {
+        argument.get_id() == column && argument.get_value_hint() == ValueHint::FilePath
+    })
 }
 
 fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::Error> {
@@ -150,23 +152,23 @@ fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::E
 }
 
 /// Refuses options after `--` that no pair's command line could have: a row of the table is not at fault then.
-fn check_options(options: &[String]) -> Result<(), Failure> {
+fn check_options(options: &[String]) -> Result<(), Error> {
     let remedy = "after -- come options of `knotdock dock`, which `knotdock dock --help` lists";
     let of_no_row = ["knotdock dock"].into_iter().map(str::to_owned);
     let files = ["--"].iter().chain(&FILLED_IN).map(ToString::to_string);
     let words = of_no_row.chain(options.iter().cloned()).chain(files);
     match parse(words) {
-        Ok(command) if command.dock.names_its_run() => Err(Failure::input(
+        Ok(command) if command.dock.names_its_run() => Err(Error::input(
             "--output cannot stand after --: the batch chooses the directories of its runs",
         )
-        .remedy("name the batch's own directory with -o before --")),
+        .help("name the batch's own directory with -o before --")),
         Err(error)
             if matches!(
                 error.kind(),
                 ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
             ) =>
         {
-            Err(Failure::input("--help cannot stand after --").remedy(remedy))
+            Err(Error::input("--help cannot stand after --").help(remedy))
         }
         Err(error)
             if error.kind() == ErrorKind::UnknownArgument
@@ -174,19 +176,19 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
                     .iter()
                     .any(|file| first_paragraph(&error).contains(*file)) =>
         {
-            Err(Failure::input("files cannot stand after --: the table names them").remedy(remedy))
+            Err(Error::input("files cannot stand after --: the table names them").help(remedy))
         }
         // In conflict with the files are --rerun, which no row can do with, and --symmetry, which a row without a
         // ligand asks for.
-        Err(error) if first_paragraph(&error).contains("--rerun") => Err(Failure::input(
+        Err(error) if first_paragraph(&error).contains("--rerun") => Err(Error::input(
             "--rerun cannot stand after --: the table says what is docked",
         )
-        .remedy(remedy)),
+        .help(remedy)),
         Err(error)
             if error.kind() == ErrorKind::ArgumentConflict
                 && !first_paragraph(&error).contains("LIGAND") =>
         {
-            Err(Failure::input(format!("after --: {}", first_paragraph(&error))).remedy(remedy))
+            Err(Error::input(format!("after --: {}", first_paragraph(&error))).help(remedy))
         }
         Err(error)
             if matches!(
@@ -202,7 +204,7 @@ fn check_options(options: &[String]) -> Result<(), Failure> {
             let suggested = suggestions::suggested(&error);
             let remedy =
                 suggested.map_or_else(|| remedy.to_owned(), |text| format!("{text}; {remedy}"));
-            Err(Failure::input(format!("after --: {}", first_paragraph(&error))).remedy(remedy))
+            Err(Error::input(format!("after --: {}", first_paragraph(&error))).help(remedy))
         }
         Ok(command) => command.dock.check_config(),
         // What is missing or in conflict here may be otherwise beside a row's own options.
@@ -224,7 +226,7 @@ fn command(
         }
         let of_files = option_named(column).filter(|option| option.is_of_files());
         let is_file = match of_files {
-            Some(option) => option.names_file(),
+            Some(option) => option.form() == Form::File,
             None => names_files(column) && !(column == CONFIG && value.contains('=')),
         };
         let value = if is_file {
@@ -274,13 +276,13 @@ fn at(folder: &Path, file: &str) -> String {
 }
 
 /// A file's part of a pair's name.
-fn part(file: &str) -> Result<String, Failure> {
+fn part(file: &str) -> Result<String, Error> {
     let spec = InputSpec::parse(file)?;
     Ok(label(&spec.path, spec.chains.as_deref()))
 }
 
 /// What the receptor is docked to, for the pair's name: the ligand, or into which ring.
-fn partner(row: &PairRow, of_all: Option<&str>) -> Result<String, Failure> {
+fn partner(row: &PairRow, of_all: Option<&str>) -> Result<String, Error> {
     let own = row.options.iter().find(|(name, _)| name == "symmetry");
     match own.map(|(_, symmetry)| symmetry.as_str()).or(of_all) {
         Some(symmetry) if row.ligand.is_empty() => Ok(symmetry.to_owned()),

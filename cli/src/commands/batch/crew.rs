@@ -6,7 +6,7 @@ use std::thread::{Builder, scope};
 use knotdock::dock::shared_process::share_process;
 
 use crate::commands::batch::schedule::Turn;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// A pair that waits for its turn.
 pub struct Job<J> {
@@ -19,21 +19,21 @@ pub struct Job<J> {
 /// Hears which pairs are started and what came of them, on one thread.
 pub trait Watch<T> {
     /// A pair at a place is about to be docked.
-    fn start(&mut self, place: usize) -> Result<(), Failure>;
+    fn start(&mut self, place: usize) -> Result<(), Error>;
     /// What came of it.
-    fn done(&mut self, place: usize, row: T) -> Result<(), Failure>;
+    fn done(&mut self, place: usize, row: T) -> Result<(), Error>;
 }
 
 /// Docks pairs in their order by `dock`, as many at once as `threads` suffice for, before the eyes of `watch`.
 ///
 /// # Errors
-/// The first of `watch`, after which no pair is started, and [`Failure`] where a thread cannot be started.
+/// The first of `watch`, after which no pair is started, and [`Error`] where a thread cannot be started.
 pub fn dock_all<J: Send, T: Send>(
     jobs: Vec<Job<J>>,
     threads: usize,
     dock: impl Fn(J, usize) -> T + Sync,
     watch: &mut dyn Watch<T>,
-) -> Result<(), Failure> {
+) -> Result<(), Error> {
     let (sender, receiver) = channel();
     let mut waiting = jobs.into_iter().peekable();
     let (mut free, mut running) = (threads, 0usize);
@@ -62,7 +62,7 @@ pub fn dock_all<J: Send, T: Send>(
                 };
                 if let Err(error) = Builder::new().spawn_scoped(scope, work) {
                     let message = format!("the system could not start a thread: {error}");
-                    failed = Some(Failure::other(message).remedy("use fewer threads (-j)"));
+                    failed = Some(Error::machine(message).help("use fewer threads (-j)"));
                     continue;
                 }
                 free = free.saturating_sub(turn.threads);

@@ -1,5 +1,6 @@
 //! The loop of a batch or a shard: pairs that are not done are docked, and each is added to the batch's files.
 
+use knotdock::output::files::file_error;
 use std::path::PathBuf;
 
 use crate::shards::part::Part;
@@ -8,7 +9,7 @@ use crate::shards::scratch::Scratch;
 use crate::shards::{POSES, SHARDS};
 use crate::tables::batch_results::{PairResult, RESULTS};
 use crate::tables::report::counted;
-use knotdock::output::files::whole_file::{FileError, is_link};
+use knotdock::output::files::whole_file::is_link;
 use serde_json::{Value, json};
 
 use crate::commands::batch::ExitCode;
@@ -19,8 +20,8 @@ use crate::commands::batch::pair::{DockedPair, PairWork};
 use crate::commands::batch::plan::plan;
 use crate::commands::report::write_listed;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
+use knotdock_structures::Error;
 
 /// So often a pair may be under way when its process ends before it is given up.
 const KILLS: usize = 10;
@@ -45,7 +46,7 @@ pub struct BatchRun {
 
 impl BatchRun {
     /// Docks those of the pairs that are not done; the exit code.
-    pub fn dock(self, pairs: Vec<Pair>, console: Console) -> Result<ExitCode, Failure> {
+    pub fn dock(self, pairs: Vec<Pair>, console: Console) -> Result<ExitCode, Error> {
         let place = self.place()?;
         let (_lock, leftovers) = self.record.take(&place)?;
         warn_leftovers(&leftovers, console);
@@ -116,28 +117,28 @@ impl BatchRun {
     }
 
     /// The folder of the batch's or the shard's files.
-    fn place(&self) -> Result<PathBuf, Failure> {
+    fn place(&self) -> Result<PathBuf, Error> {
         if !self.is_shard {
             return Ok(self.directory.clone());
         }
         let shards = self.directory.join(SHARDS);
         for folder in [&self.directory, &shards] {
             if is_link(folder) {
-                return Err(FileError::link(folder).into());
+                return Err(file_error::link(folder).into());
             }
         }
         let mut entries = std::fs::read_dir(&self.directory).into_iter().flatten();
         if !shards.is_dir() && entries.next().is_some() {
             let message = "the directory is not empty and holds no shards of knotdock";
-            return Err(Failure::input(message)
+            return Err(Error::input(message)
                 .at(&self.directory)
-                .remedy("choose another directory with -o"));
+                .help("choose another directory with -o"));
         }
         Ok(shards.join(self.record.shard.folder()))
     }
 
     /// Docks the pairs that wait.
-    fn dock_all(&self, pairs: Vec<Pair>, watch: &mut ResultFiles) -> Result<(), Failure> {
+    fn dock_all(&self, pairs: Vec<Pair>, watch: &mut ResultFiles) -> Result<(), Error> {
         let console = watch.console;
         let (lost, count) = (watch.part.lost, pairs.len());
         if lost > 0 {
@@ -177,11 +178,7 @@ impl BatchRun {
 
     /// The pairs that have to be docked: those that were never started, and those that were under way when the process
     /// ended. What ended the process too often is noted as failed. Whole runs are all looked at.
-    fn waiting(
-        &self,
-        pairs: Vec<Pair>,
-        part: &mut Part,
-    ) -> Result<(Vec<Pair>, Vec<Pair>), Failure> {
+    fn waiting(&self, pairs: Vec<Pair>, part: &mut Part) -> Result<(Vec<Pair>, Vec<Pair>), Error> {
         let (mut fresh, mut stopped) = (Vec::new(), Vec::new());
         let is_again = |is_done: bool| match self.record.keep {
             Keep::All => true,
@@ -245,19 +242,19 @@ struct ResultFiles<'a> {
 }
 
 impl Watch<DockedPair> for ResultFiles<'_> {
-    fn start(&mut self, place: usize) -> Result<(), Failure> {
+    fn start(&mut self, place: usize) -> Result<(), Error> {
         self.console.go_on()?;
         Ok(self.part.start(&self.pairs[place].1.name)?)
     }
 
-    fn done(&mut self, place: usize, pair: DockedPair) -> Result<(), Failure> {
+    fn done(&mut self, place: usize, pair: DockedPair) -> Result<(), Error> {
         // What was interrupted has not failed.
         self.console.go_on()?;
         if let Err(failure) = &pair.outcome {
             self.code.add(failure);
         }
         let (row, result) = &mut self.pairs[place];
-        let outcome = pair.outcome.map_err(|failure| failure.line_of_table());
+        let outcome = pair.outcome.map_err(|failure| failure.in_one_line());
         result.outcome = outcome;
         self.part.add(result, pair.poses.as_ref())?;
         // What is in the files is not held.

@@ -14,7 +14,7 @@ use crate::shards::Shard;
 use crate::shards::record::{BatchRecord, Keep};
 use crate::tables::report::counted;
 use clap::Args;
-use knotdock::options::values::{AllOr, all_or_at_least_one, at_least_one};
+use knotdock::options::values::{AT_LEAST_ONE, AllOr, all_or_at_least_one, in_range};
 
 use crate::arguments::program::is_of_program;
 use crate::commands::batch::batch_pairs::{Pairs, pairs};
@@ -22,7 +22,7 @@ use crate::commands::batch::docking::BatchRun;
 use crate::commands::batch::limits::Limits;
 use crate::inputs::recent_molecules::keep_recent;
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Dock many pairs of a table, and sum up what came of them.
 ///
@@ -42,7 +42,7 @@ pub struct Batch {
     output: Option<PathBuf>,
     /// Threads of the whole batch. Small pairs are docked at the same time on one thread each, large ones by themselves
     /// on all. A pair whose own options name a number of threads has that [default: all hardware threads].
-    #[arg(short = 'j', long, value_name = "COUNT", value_parser = at_least_one)]
+    #[arg(short = 'j', long, value_name = "COUNT", value_parser = in_range::<usize>(AT_LEAST_ONE))]
     threads: Option<usize>,
     /// What is kept of each pair.
     #[arg(long, value_name = "WHAT", value_enum, default_value_t = Keep::All)]
@@ -72,31 +72,31 @@ pub struct Batch {
 
 impl Batch {
     /// Docks the pairs; the exit code: 0 if all are done, 2 if what failed did so by its input, else 1.
-    pub fn run(self, console: Console) -> Result<u8, Failure> {
+    pub fn run(self, console: Console) -> Result<u8, Error> {
         let directory = self.output.clone().unwrap_or_else(|| {
             let stem = self.pairs.file_stem().unwrap_or_default();
             PathBuf::from(format!("knotdock_{}", stem.to_string_lossy()))
         });
         if let Some(word) = self.options.iter().find(|word| is_of_program(word)) {
-            return Err(Failure::input(format!(
+            return Err(Error::input(format!(
                 "{word} stands after --, where the options of each pair stand"
             ))
-            .remedy(format!(
+            .help(format!(
                 "give {word} before --: it is an option of the whole batch"
             )));
         }
         let is_plain = self.shard.is_none() && self.keep == Keep::All;
         if is_plain && (self.scratch.is_some() || self.retry_failed) {
             return Err(
-                Failure::input("--scratch and --retry-failed need shards, and this batch writes a directory for each pair")
-                    .remedy("leave them out, or give --keep table, --keep none or --shard I/N"),
+                Error::input("--scratch and --retry-failed need shards, and this batch writes a directory for each pair")
+                    .help("leave them out, or give --keep table, --keep none or --shard I/N"),
             );
         }
         if self.rows.is_some() && !self.keep.has_poses() {
-            return Err(Failure::input(
-                "--rows needs poses.csv.gz, which this batch does not keep",
-            )
-            .remedy("leave it out, or give --keep table or --keep top"));
+            return Err(
+                Error::input("--rows needs poses.csv.gz, which this batch does not keep")
+                    .help("leave it out, or give --keep table or --keep top"),
+            );
         }
         keep_recent();
         let shard = self.shard.unwrap_or(Shard::WHOLE);
@@ -140,7 +140,7 @@ pub struct ExitCode(u8);
 
 impl ExitCode {
     /// Takes account of a pair that failed.
-    pub fn add(&mut self, failure: &Failure) {
+    pub fn add(&mut self, failure: &Error) {
         self.0 = match (self.0, failure.exit_code()) {
             (0 | 2, 2) => 2,
             _ => 1,

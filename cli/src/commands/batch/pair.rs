@@ -1,5 +1,6 @@
 //! One pair of a batch: docked unless its run is there, and reported.
 
+use crate::messages::failure;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::thread::sleep;
@@ -14,8 +15,8 @@ use crate::commands::batch::limits::{Limits, PairTime};
 use crate::commands::dock::{Dock, Prepared};
 use crate::docking::{Docking, held_by_another};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::run_summary::summary_line;
+use knotdock_structures::Error;
 
 /// Seconds before a pair is docked again.
 const PAUSE: Duration = Duration::from_secs(1);
@@ -43,7 +44,7 @@ pub struct DockedPair {
     /// Its JSON entry.
     pub entry: Value,
     /// Its row of the table.
-    pub outcome: Result<RunSummary, Failure>,
+    pub outcome: Result<RunSummary, Error>,
     /// Its poses, where they are kept in one file with those of others.
     pub poses: Option<PosesOfPair>,
 }
@@ -77,8 +78,8 @@ impl PairWork {
                 }
             }
             Err(failure) => {
-                console.error(format!("{head} failed\n{}", failure.text()));
-                entry["error"] = failure.json()["error"].clone();
+                console.error(format!("{head} failed\n{}", failure::text(&failure)));
+                entry["error"] = failure::json(&failure)["error"].clone();
                 DockedPair {
                     entry,
                     outcome: Err(failure),
@@ -94,7 +95,7 @@ impl PairWork {
     }
 
     /// Docks it, and again where that may help.
-    fn attempts(&self, threads: usize, console: Console) -> Result<Left, Failure> {
+    fn attempts(&self, threads: usize, console: Console) -> Result<Left, Error> {
         let mut retries = self.limits.retries;
         loop {
             let time = PairTime::new(self.limits, console);
@@ -107,8 +108,8 @@ impl PairWork {
             let docked = catch_unwind(AssertUnwindSafe(|| self.once(threads, silent, console)));
             let docked = docked.unwrap_or_else(|_| {
                 Err(
-                    Failure::of_program("knotdock failed on this pair: this is a bug")
-                        .remedy("report it with the files of the pair; the other pairs go on"),
+                    Error::lasting("knotdock failed on this pair: this is a bug")
+                        .help("report it with the files of the pair; the other pairs go on"),
                 )
             });
             match docked {
@@ -121,7 +122,7 @@ impl PairWork {
         }
     }
 
-    fn once(&self, threads: usize, silent: Console, console: Console) -> Result<Left, Failure> {
+    fn once(&self, threads: usize, silent: Console, console: Console) -> Result<Left, Error> {
         let dock = self.dock.clone();
         dock.prepared(silent, Some(threads), |prepared| match (self.keep, prepared) {
             (Keep::All, prepared) => {
@@ -132,15 +133,15 @@ impl PairWork {
                 let (summary, poses) = self.poses(*docking, silent)?;
                 Ok((true, summary, poses))
             }
-            (_, Prepared::Ensemble(_)) => Err(Failure::input(
+            (_, Prepared::Ensemble(_)) => Err(Error::input(
                 "this pair has several conformations, which are docked in runs of their own, and only --keep all keeps runs",
             )
-            .remedy("dock such pairs with --keep all")),
+            .help("dock such pairs with --keep all")),
         })
     }
 
     /// Docks the pair into its directory; whether it had to be done.
-    fn run(&self, prepared: Prepared, silent: Console, console: Console) -> Result<bool, Failure> {
+    fn run(&self, prepared: Prepared, silent: Console, console: Console) -> Result<bool, Error> {
         if prepared.is_done(console) {
             return Ok(false);
         }
@@ -156,7 +157,7 @@ impl PairWork {
         &self,
         docking: Docking,
         silent: Console,
-    ) -> Result<(RunSummary, Option<PosesOfPair>), Failure> {
+    ) -> Result<(RunSummary, Option<PosesOfPair>), Error> {
         let docked = docking.dock(silent)?;
         let poses = match self.keep.has_poses() {
             true => Some(PosesOfPair::new(
@@ -166,7 +167,7 @@ impl PairWork {
             )),
             false => None,
         };
-        let poses = poses.transpose().map_err(Failure::other)?;
+        let poses = poses.transpose().map_err(Error::machine)?;
         if self.keep == Keep::Top {
             docked.export_top(&self.directory)?;
         }

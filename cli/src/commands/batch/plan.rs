@@ -1,6 +1,6 @@
 //! The pairs of a batch in their turns, on the threads of the batch.
 
-use knotdock::options::Threads;
+use knotdock::threads;
 
 use crate::commands::batch::batch_pairs::Pair;
 use crate::commands::batch::schedule::{Own, Turn, turns};
@@ -18,7 +18,7 @@ pub fn plan(pairs: &[Pair], given: Option<usize>) -> (Vec<Turn>, usize) {
         _ => None,
     };
     let threads = given.or(agreed);
-    let threads = threads.unwrap_or_else(|| Threads::default().count());
+    let threads = threads::or_all(threads);
     // Threads that all pairs agree on are those of the batch.
     let own: Vec<Own> = own
         .into_iter()

@@ -14,19 +14,19 @@ use crate::arguments::output_file::check_output;
 use crate::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_model};
 use crate::inputs::native::{NativeFiles, others_text};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 impl Evaluate {
     /// Evaluates complex files; the exit code: 2 where some could not be.
-    pub(super) fn complexes(&self, console: Console) -> Result<u8, Failure> {
+    pub(super) fn complexes(&self, console: Console) -> Result<u8, Error> {
         let (files, chains) = files_and_chains(&self.words, "evaluate")?;
         if self.receptor.is_some() || self.ligand.is_some() {
             let error = "--receptor and --ligand name what poses move, and these are complexes";
-            return Err(Failure::input(error)
-                .remedy("leave them out; chains of the sides go behind the files, such as H,L A"));
+            return Err(Error::input(error)
+                .help("leave them out; chains of the sides go behind the files, such as H,L A"));
         }
         let Some(native) = self.native.read()? else {
-            return Err(Failure::input("no known complex is given").remedy(
+            return Err(Error::input("no known complex is given").help(
                 "name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE",
             ));
         };
@@ -39,7 +39,7 @@ impl Evaluate {
         native.warn(console);
         let choice = self.chain_choice(chains.is_some());
         let files = (files, chains.as_ref());
-        let reading = self.input.reading();
+        let reading = self.input.options.input.reading();
         let (found, code) = for_each_model(files, &reading, console, |file, sides| {
             evaluated(file, sides, &native, &choice)
         })?;
@@ -70,7 +70,7 @@ fn evaluated(
     sides: ComplexSides,
     native: &NativeFiles,
     choice: &ChainChoice,
-) -> Result<(EvaluatedComplex, Vec<String>), Failure> {
+) -> Result<(EvaluatedComplex, Vec<String>), Error> {
     let [receptor, ligand] = &sides.molecules;
     let evaluator = native.evaluator_by(receptor, ligand, choice)?;
     let (quality, report) = evaluator.best(&Pose::identity());

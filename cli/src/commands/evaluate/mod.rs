@@ -2,14 +2,16 @@
 
 mod complexes;
 
+use crate::arguments::options::{OfReading, TypedOptions};
 use std::path::{Path, PathBuf};
 
+use crate::arguments::machine::Threads;
 use crate::records::ensemble_record::is_ensemble;
 use crate::records::recorded_run::RecordedRun;
 use crate::tables::report;
 use clap::Args;
 use knotdock::evaluate::{Capri, ChainChoice, Evaluator, PoseQuality};
-use knotdock::options::{InputOptions, Threads, definitions};
+use knotdock::options::{InputOptions, definitions};
 use knotdock::output::files::added::write_named;
 use knotdock::output::files::staging::put_back;
 use knotdock::output::tables::fields::Column;
@@ -23,8 +25,8 @@ use crate::ensemble::finished::{RunRows, runs};
 use crate::inputs::molecules::Input;
 use crate::inputs::native::{NativeArguments, NativeFiles, announce, measure};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
 use crate::messages::leftovers::warn_leftovers;
+use knotdock_structures::Error;
 
 /// Measure the poses of a run, or complexes of any program, against a known complex.
 ///
@@ -45,7 +47,7 @@ pub struct Evaluate {
     #[arg(long, value_name = "FILE")]
     ligand: Option<String>,
     #[command(flatten)]
-    input: InputOptions,
+    input: TypedOptions<OfReading>,
     #[command(flatten)]
     native: NativeArguments,
     /// Chains with those of the known complex that they are measured against, as DOCKED:NATIVE, such as A:E,B:F.
@@ -68,7 +70,7 @@ const OUTPUT: &str = "Output";
 
 impl Evaluate {
     /// Evaluates; the exit code: 2 where some complexes could not be.
-    pub fn run(self, console: Console) -> Result<u8, Failure> {
+    pub fn run(self, console: Console) -> Result<u8, Error> {
         threads::on(self.threads.count(), || {
             if self.words.iter().any(|word| is_complex(word)) {
                 return self.complexes(console);
@@ -76,7 +78,7 @@ impl Evaluate {
             match self.words.as_slice() {
                 [poses] => self.evaluate(Path::new(poses), console).map(|()| 0),
                 _ => Err(
-                    Failure::input("several runs are given, and one is evaluated at a time").remedy(
+                    Error::input("several runs are given, and one is evaluated at a time").help(
                         "name one directory or table; of complexes, files that end in .pdb or .cif",
                     ),
                 ),
@@ -93,7 +95,7 @@ impl Evaluate {
     }
 
     /// Evaluates the poses of a run or a table.
-    fn evaluate(&self, poses: &Path, console: Console) -> Result<(), Failure> {
+    fn evaluate(&self, poses: &Path, console: Console) -> Result<(), Error> {
         let table_path = match poses.is_dir() {
             true => poses.join("poses.csv"),
             false => poses.to_owned(),
@@ -106,11 +108,11 @@ impl Evaluate {
         let places: Vec<usize> = (0..table.rows().len()).collect();
         let directory = run_path.parent().unwrap_or(Path::new(""));
         if is_ensemble(directory) && (self.receptor.is_some() || self.ligand.is_some()) {
-            return Err(Failure::input(
+            return Err(Error::input(
                 "--receptor and --ligand name one conformation, and the poses of an ensemble have several",
             )
             .at(directory)
-            .remedy("leave them out, or name the run of a member: a folder in members/"));
+            .help("leave them out, or name the run of a member: a folder in members/"));
         }
         let mut qualities: Vec<Option<(PoseQuality, String)>> = vec![None; places.len()];
         let mut matches = Vec::new();
@@ -121,7 +123,7 @@ impl Evaluate {
             for (row, (quality, report)) in rows.into_iter().zip(measure(&evaluator, &poses)) {
                 qualities[row] = Some((quality, report.native_chains.clone()));
             }
-            matches.push(serde_json::to_value(evaluator.report()).map_err(Failure::other)?);
+            matches.push(serde_json::to_value(evaluator.report()).map_err(Error::machine)?);
         }
         // Each row is of one run.
         let (qualities, native_chains): (Vec<PoseQuality>, Vec<String>) =
@@ -177,7 +179,7 @@ impl Evaluate {
     }
 
     /// The known complex matched with the molecules of a run.
-    fn evaluator(&self, run_path: &Path, console: Console) -> Result<Evaluator, Failure> {
+    fn evaluator(&self, run_path: &Path, console: Console) -> Result<Evaluator, Error> {
         let (receptor, ligand, native) = self.inputs(run_path)?;
         if let Some(file) = &self.output {
             let structures = [&receptor, &ligand].into_iter().chain(native.inputs());
@@ -189,18 +191,20 @@ impl Evaluate {
     }
 
     /// The molecules docked and the known complex: those named, or else those of the run.
-    fn inputs(&self, run_path: &Path) -> Result<(Input, Input, NativeFiles), Failure> {
-        if self.receptor.is_none() && self.ligand.is_none() && self.input != InputOptions::default()
+    fn inputs(&self, run_path: &Path) -> Result<(Input, Input, NativeFiles), Error> {
+        if self.receptor.is_none()
+            && self.ligand.is_none()
+            && self.input.options.input != InputOptions::default()
         {
             let input = definitions().iter().filter(|one| one.subject() == "input");
             let names: Vec<String> = input.map(|one| format!("--{}", one.long())).collect();
             let names = names.join(", ");
-            return Err(Failure::input(format!(
+            return Err(Error::input(format!(
                 "{names} need --receptor and --ligand: the molecules of a run are read as the run read them"
             ))
-            .remedy("leave them out, or name the molecules"));
+            .help("leave them out, or name the molecules"));
         }
-        let reading = self.input.reading();
+        let reading = self.input.options.input.reading();
         let native = match (&self.receptor, &self.ligand, self.native.read()?) {
             (Some(receptor), Some(ligand), Some(native)) => {
                 let [receptor, ligand] = Input::read_all([receptor, ligand], &reading)?;
@@ -210,8 +214,7 @@ impl Evaluate {
         };
         let needed = "name the molecules that were docked with --receptor and --ligand, and the known complex with \
                       --native or with --native-receptor and --native-ligand";
-        let run =
-            RecordedRun::read(run_path).map_err(|error| Failure::from(error).remedy(needed))?;
+        let run = RecordedRun::read(run_path).map_err(|error| Error::from(error).help(needed))?;
         let part = |named: &Option<String>, place: usize| match named {
             Some(text) => {
                 let [input] = Input::read_all([text], &reading)?;
@@ -233,7 +236,7 @@ impl Evaluate {
             (Some(native), _) => native,
             (None, Some(record)) => NativeFiles::recorded(record, run_path)?,
             (None, None) => {
-                return Err(Failure::input("no known complex is given").remedy(
+                return Err(Error::input("no known complex is given").help(
                     "name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE",
                 ));
             }

@@ -12,7 +12,7 @@ use knotdock_structures::sampling::Ball;
 use super::Sample;
 use crate::arguments::output_file::{check_output, is_same};
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 
 /// Form in which balls are exported.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -23,7 +23,7 @@ pub(super) enum Export {
 
 impl Export {
     /// Writes balls in this form.
-    pub fn write(self, knots: &Knots, path: &Path) -> Result<StagedFile, Failure> {
+    pub fn write(self, knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
         Ok(match self {
             Self::Mesh => write_mesh(knots, path)?,
             Self::PseudoAtoms => write_pseudo_atoms(knots, path)?,
@@ -39,7 +39,7 @@ fn ending(path: &Path) -> Option<String> {
 
 impl Sample {
     /// Checks, before any work, that the files to write are not there and can be made.
-    pub(super) fn check_files(&self, console: Console) -> Result<Option<Export>, Failure> {
+    pub(super) fn check_files(&self, console: Console) -> Result<Option<Export>, Error> {
         let files: Vec<&PathBuf> = [
             Some(&self.output),
             self.picture.as_ref(),
@@ -50,9 +50,9 @@ impl Sample {
         .collect();
         for (index, file) in files.iter().enumerate() {
             if files[..index].iter().any(|other| is_same(other, file)) {
-                return Err(Failure::input("the same file is named twice")
+                return Err(Error::input("the same file is named twice")
                     .at(file)
-                    .remedy("give each output file its own name"));
+                    .help("give each output file its own name"));
             }
             check_output(file, [self.mesh.as_path()], self.force, console)?;
         }
@@ -60,9 +60,9 @@ impl Sample {
             && ending(path).as_deref() != Some("svg")
             && !is_stream(path)
         {
-            return Err(Failure::input("--picture writes .svg files")
+            return Err(Error::input("--picture writes .svg files")
                 .at(path)
-                .remedy("end the name with .svg"));
+                .help("end the name with .svg"));
         }
         let Some(path) = &self.export else {
             return Ok(None);
@@ -70,9 +70,9 @@ impl Sample {
         match ending(path).as_deref() {
             Some("obj") => Ok(Some(Export::Mesh)),
             Some("pdb") => Ok(Some(Export::PseudoAtoms)),
-            _ => Err(Failure::input("--export writes .obj and .pdb files")
+            _ => Err(Error::input("--export writes .obj and .pdb files")
                 .at(path)
-                .remedy(
+                .help(
                     "end the name with .obj for a mesh of spheres or with .pdb for pseudo-atoms",
                 )),
         }
@@ -85,7 +85,7 @@ impl Sample {
         knots: &Knots,
         balls: &[Ball],
         export: Option<Export>,
-    ) -> Result<Vec<String>, Failure> {
+    ) -> Result<Vec<String>, Error> {
         // None takes its place before all of them are on the device.
         let mut staged = vec![write_table(knots, &self.output)?];
         let mut files = vec![&self.output];

@@ -6,9 +6,10 @@ mod sample_report;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use crate::arguments::machine::Threads;
 use clap::{Args, ValueEnum};
-use knotdock::options::values::{above_zero, at_least_one, protrusion};
-use knotdock::options::{SampleGrid, Threads};
+use knotdock::options::SampleGrid;
+use knotdock::options::values::{ABOVE_ZERO, AT_LEAST_ONE, Range, in_range};
 use knotdock::threads;
 use knotdock_structures::mesh::{self, Solid};
 use knotdock_structures::numeric::Bump;
@@ -22,7 +23,7 @@ use knotdock_structures::sphere_tree::SphereTree;
 use serde_json::json;
 
 use crate::messages::console::Console;
-use crate::messages::failure::Failure;
+use knotdock_structures::Error;
 use sample_report::{SampleReport, weights_text};
 
 /// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
@@ -42,7 +43,7 @@ pub struct Sample {
     #[arg(long, value_enum, default_value_t = MethodName::Bi)]
     method: MethodName,
     /// Protrusion factor of method bi, 0 to 1: the less, the more and the smoother the balls of A1 [default: 0.25].
-    #[arg(long, value_parser = protrusion)]
+    #[arg(long, value_parser = in_range::<f64>(Range::between(0.0, 1.0)))]
     mu: Option<f64>,
     /// Which set of method bi to write [default: a3].
     #[arg(long, value_enum)]
@@ -56,11 +57,11 @@ pub struct Sample {
     #[arg(long, value_enum, default_value_t = Weights::Unit)]
     weights: Weights,
     /// Exponent of the bump that weights are fitted for, with --weights fitted [default: 2].
-    #[arg(long, value_parser = above_zero)]
+    #[arg(long, value_parser = in_range::<f64>(ABOVE_ZERO))]
     alpha: Option<f64>,
     /// Write no more balls than this: a level of a tree of bounding balls over the set, which covers what the set
     /// covers.
-    #[arg(long, value_name = "BALLS", value_parser = at_least_one, conflicts_with = "weights")]
+    #[arg(long, value_name = "BALLS", value_parser = in_range::<usize>(AT_LEAST_ONE), conflicts_with = "weights")]
     level: Option<usize>,
     /// The table of balls to write.
     #[arg(short, long, value_name = "FILE", default_value = "knots.csv")]
@@ -125,12 +126,12 @@ struct Finished {
 
 impl Sample {
     /// Samples.
-    pub fn run(self, console: Console) -> Result<(), Failure> {
+    pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.sample(console))?
     }
 
     /// Samples on the threads of the caller.
-    fn sample(self, console: Console) -> Result<(), Failure> {
+    fn sample(self, console: Console) -> Result<(), Error> {
         let method = self.method()?;
         let export = self.check_files(console)?;
         let start = Instant::now();
@@ -138,11 +139,11 @@ impl Sample {
         let reading = Step::since("reading the mesh", start);
         console.say(format!("Mesh: {report}"));
         self.warn(report.warnings(), &console)?;
-        let solid = Solid::new(&mesh).map_err(|error| Failure::input(error).at(&self.mesh))?;
+        let solid = Solid::new(&mesh).map_err(|error| Error::input(error).at(&self.mesh))?;
         let mut sampling = sample(&solid, self.grid.per_axis, method).map_err(|error| {
-            Failure::input(error).at(&self.mesh).remedy(
-                "check that the mesh is closed and one solid, or sample it on a finer --grid",
-            )
+            Error::input(error)
+                .at(&self.mesh)
+                .help("check that the mesh is closed and one solid, or sample it on a finer --grid")
         })?;
         sampling.steps.insert(0, reading);
 
@@ -174,7 +175,7 @@ impl Sample {
         let fitted = finished.fitted.as_ref();
         let weights = fitted.map(|fitted| fitted.weights.as_slice());
         let knots = knots(frame, &finished.balls, weights)
-            .map_err(|error| Failure::input(error).at(&self.mesh))?;
+            .map_err(|error| Error::input(error).at(&self.mesh))?;
         let written = self.write(&solid, &knots, &finished.balls, export)?;
 
         let reported = SampleReport::new(&sampling, &fits, &solid, &meter);
@@ -204,12 +205,12 @@ impl Sample {
     }
 
     /// Warns of what is wrong with the mesh, or refuses it.
-    fn warn(&self, warnings: Vec<String>, console: &Console) -> Result<(), Failure> {
+    fn warn(&self, warnings: Vec<String>, console: &Console) -> Result<(), Error> {
         for warning in warnings {
             if self.strict {
-                return Err(Failure::input(warning)
+                return Err(Error::input(warning)
                     .at(&self.mesh)
-                    .remedy("repair the mesh, or leave --strict out to sample what the winding number calls inside"));
+                    .help("repair the mesh, or leave --strict out to sample what the winding number calls inside"));
             }
             console.warn(warning);
         }
@@ -217,7 +218,7 @@ impl Sample {
     }
 
     /// The balls to write: the chosen set, weighted or thinned out as requested.
-    fn finish(&self, sampling: &Sampling, meter: &HausdorffMeter) -> Result<Finished, Failure> {
+    fn finish(&self, sampling: &Sampling, meter: &HausdorffMeter) -> Result<Finished, Error> {
         let start = Instant::now();
         let mut finished = Finished {
             balls: self.chosen(sampling)?.balls.clone(),
@@ -227,16 +228,15 @@ impl Sample {
         };
         if self.weights == Weights::Fitted {
             if sampling.inside_nodes == 0 {
-                return Err(Failure::input(
+                return Err(Error::input(
                     "weights are fitted at nodes of the grid inside the mesh, and there are none",
                 )
                 .at(&self.mesh)
-                .remedy("sample it on a finer --grid, or leave out --weights fitted"));
+                .help("sample it on a finer --grid, or leave out --weights fitted"));
             }
             let (field, volume) = (&sampling.field, meter.volume());
-            let bump = Bump::new(self.alpha.unwrap_or(FITTED_ALPHA)).map_err(|error| {
-                Failure::input(error).remedy("give --alpha a number above zero")
-            })?;
+            let bump = Bump::new(self.alpha.unwrap_or(FITTED_ALPHA))
+                .map_err(|error| Error::input(error).help("give --alpha a number above zero"))?;
             finished.fitted = Some(weights::fit(field, &finished.balls, bump, volume));
             finished.step = Some(Step::since("fitting weights", start));
         }
@@ -251,14 +251,14 @@ impl Sample {
     }
 
     /// The method with its options; options of other methods, and of weights that are not fitted, are refused.
-    fn method(&self) -> Result<Method, Failure> {
+    fn method(&self) -> Result<Method, Error> {
         if self.method != MethodName::Bi && (self.mu.is_some() || self.set.is_some()) {
-            return Err(Failure::input("--mu and --set need --method bi")
-                .remedy("leave them out, or sample with --method bi"));
+            return Err(Error::input("--mu and --set need --method bi")
+                .help("leave them out, or sample with --method bi"));
         }
         if self.weights != Weights::Fitted && self.alpha.is_some() {
-            return Err(Failure::input("--alpha needs --weights fitted")
-                .remedy("add --weights fitted, or leave --alpha out"));
+            return Err(Error::input("--alpha needs --weights fitted")
+                .help("add --weights fitted, or leave --alpha out"));
         }
         Ok(match self.method {
             MethodName::Bi => {
@@ -275,10 +275,10 @@ impl Sample {
     }
 
     /// The set to write.
-    fn chosen<'a>(&self, sampling: &'a Sampling) -> Result<&'a BallSet, Failure> {
+    fn chosen<'a>(&self, sampling: &'a Sampling) -> Result<&'a BallSet, Error> {
         let name = chosen_name(self, sampling);
         let found = sampling.sets.iter().find(|set| Some(set.name) == name);
-        found.ok_or_else(|| Failure::other("the sampler gave no such set"))
+        found.ok_or_else(|| Error::machine("the sampler gave no such set"))
     }
 }
 

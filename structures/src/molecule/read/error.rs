@@ -362,3 +362,14 @@ impl ReadError {
         }
     }
 }
+
+impl From<ReadError> for crate::Error {
+    fn from(error: ReadError) -> Self {
+        let line = error.line().and_then(|line| u64::try_from(line).ok());
+        let refused = Self::input(&error).on_line(line).help(error.remedy());
+        match error.file() {
+            Some(file) => refused.at(file),
+            None => refused,
+        }
+    }
+}
