@@ -2,7 +2,7 @@
 //!
 //! # Example
 //!
-//! Two structures become a plan, and the plan a ranked list (`cargo run --release --example dock`):
+//! [`dock()`] is the entry (`cargo run --release --example dock`); [`Docking`] adds progress and a deadline:
 //!
 //! ```
 // No input may end in a panic; tests may.
@@ -18,19 +18,19 @@
 //! | module | content |
 //! |---|---|
 //! | [`options`] | the options of a run, each defined once |
-//! | [`dock`] | plan, run and outcome of a docking |
+//! | [`mod@dock`] | plan, run and outcome of a docking |
 //! | [`evaluate`] | distance of poses from a known complex |
 //! | [`interface`], [`refine`], [`score`] | contacts of complexes, better models, one pose |
 //! | [`mesh`], [`geometry`] | meshes that dock; collisions, obstacles, Minkowski operations |
-//! | [`ensemble`], [`tradeoff`] | several conformations in one ranking; accuracy against time |
-//! | [`output`], [`report`] | files of runs, reports in a browser |
-//! | [`cli`] | the command line |
+//! | [`ensemble`] | several conformations in one ranking |
+//! | [`output`] | the folder of a run: `poses.csv`, complexes, `run.json` |
 //!
-//! Structures are read by `knotdock_structures`, correlations computed by `knotdock_scoring`. Lengths are in Å for
+//! The program is the crate `knotdock-cli`. Structures are read by `knotdock_structures`, correlations computed by `knotdock_scoring`. Lengths are in Å for
 //! molecules and in the files' unit for meshes. A pose takes a ligand atom at x to R x + t. A higher score is better.
 
 pub mod bounded_read;
 pub mod dock;
+mod docking;
 pub mod ensemble;
 mod error;
 pub mod evaluate;
@@ -57,4 +57,8 @@ pub mod table_text;
 mod test_molecules;
 pub mod threads;
 
+pub use docking::{Docking, Run, dock};
 pub use knotdock_structures::Error;
+pub use knotdock_structures::mesh::Mesh;
+pub use knotdock_structures::molecule::Molecule;
+pub use options::DockOptions;

@@ -13,12 +13,8 @@ use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::RUN;
 use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::{Stage, Staging};
-use knotdock::output::files::viewers::{
-    CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol,
-};
-use knotdock::output::records::manifest::{Machine, Manifest, ManifestParts, Results};
+use knotdock::output::run_folder::FinishedRun;
 use knotdock::output::tables::fields::Column;
-use knotdock::output::tables::interface_shares::{INTERFACE, write_shares};
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::output::tables::quality;
 use knotdock::output::tables::restraints;
@@ -26,7 +22,6 @@ use knotdock::output::tables::run_table::{RunTable, pose_rows};
 use knotdock_structures::Error;
 use serde_json::{Value, json};
 
-use crate::arguments::machine::machine;
 use crate::docking::Docking;
 use crate::inputs::native::measure;
 use crate::inputs::request::Known;
@@ -127,8 +122,9 @@ impl Docked {
             .unwrap_or(&rows);
         let addition = Addition::open(folder, None)?;
         let place = (addition.stage().folder(), None);
-        request.bodies.write(top, request.arrangement(), place)?;
-        Ok(addition.place(false)?)
+        let placed = request.bodies.placed();
+        placed.write(top, request.arrangement(), place)?;
+        addition.place(false)
     }
 
     /// Rank and pose of each row.
@@ -164,60 +160,25 @@ impl Docked {
             ..
         } = docking;
         let (output, plan) = (&request.options.output, &prepared.plan);
-        let rows = self.rows();
-        if !plan.restraints.is_empty() {
-            staging.write("restraints.csv", |file| {
-                restraints::write_to(plan, &outcome.poses, file)
-            })?;
-        }
         let table = self.table();
-        staging.write("poses.csv", |file| table.write_to(file))?;
         let best = table.objects(firsts(&outcome.poses).into_iter().take(BEST));
-        let top = rows.get(..output.write_top).unwrap_or(&rows);
-        let written = request.bodies.write(
-            top,
-            request.arrangement(),
-            (&staging.folder().join("top"), None),
-        )?;
-        if let Some(chains) = &written.chains {
-            let names = written.names.iter().zip(top);
-            let viewed: Vec<ViewedComplex> = names
-                .map(|(name, row)| ViewedComplex::new(row.rank, name, chains))
-                .collect();
-            write_scripts(staging, &viewed)?;
-        }
         let shown = table.first(MAX_ROWS);
         let contacts = request.bodies.contacts(&shown, &request.options);
-        if let Some(contacts) = &contacts {
-            let [receptor, ligand] = contacts.shares();
-            let sides = [("receptor", &receptor[..]), ("ligand", &ligand[..])];
-            staging.write(INTERFACE, |file| write_shares(sides, file))?;
-        }
         let inputs = request.inputs(prepared.sampling.as_deref())?;
-        let manifest = Manifest::new(ManifestParts {
+        let staged = FinishedRun {
+            bodies: request.bodies.placed(),
             inputs: &inputs,
             options: &request.options,
             plan,
             outcome,
-            results: Results {
-                poses: outcome.poses_kept,
-                clusters: outcome.clusters,
-                rows: outcome.poses.len(),
-                rotations: outcome.searched,
-            },
-            files: staging.checksums()?,
-            chains: written.chains.as_ref(),
+            further: &self.quality,
+            contacts: contacts.as_ref(),
             matching: known.as_ref().map(Known::entry).transpose()?,
-            timing: docking.clock.timing(outcome),
-            machine: Machine {
-                chosen: docking.chosen.clone(),
-                adapter: outcome.adapter.clone(),
-                ..machine(plan)
-            },
-        })
-        .map_err(Error::machine)?;
-        staging.write("run.json", |file| manifest.write_to(file))?;
-        let record = serde_json::to_value(&manifest).map_err(Error::machine)?;
+            chosen: docking.chosen.as_ref(),
+            clock: &docking.clock,
+        }
+        .stage(staging)?;
+        let record = staged.record;
         if !output.no_report {
             let report = RunReport {
                 record: &record,
@@ -232,7 +193,7 @@ impl Docked {
         Ok(Written {
             manifest: record,
             report: !output.no_report,
-            complexes: written.names,
+            complexes: staged.complexes,
             best,
         })
     }
@@ -274,15 +235,6 @@ impl Docked {
             !output.no_report,
         ));
     }
-}
-
-/// Writes the scripts that show complexes in other programs, if there are any.
-pub fn write_scripts(staging: &Stage, complexes: &[ViewedComplex]) -> Result<(), Error> {
-    if !complexes.is_empty() {
-        staging.write(PYMOL, |file| write_pymol(file, complexes))?;
-        staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;
-    }
-    Ok(())
 }
 
 /// What a run wrote.

@@ -1,19 +1,16 @@
 //! A docking run: planned, described, carried out and written.
 
 use std::path::{Path, PathBuf};
-use std::time::{Duration, Instant, SystemTime, UNIX_EPOCH};
 
 use crate::records::recorded_run::RecordedRun;
-use crate::tradeoff::choice::{Wanted, choose, deadline};
-use crate::tradeoff::cost_model::{CostModel, Workload};
-use knotdock::dock::memory::process;
-use knotdock::dock::outcome::DockOutcome;
+use crate::tradeoff::choice::{Wanted, choose};
+use knotdock::dock::cost::{CostModel, Workload, deadline};
 use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::dock::plan::DockPlan;
 use knotdock::options::{Precision, SharpChoice};
 use knotdock::output::files::staging::put_back;
 use knotdock::output::records::manifest::Chosen;
-use knotdock::output::records::manifest::{EffectTime, Timing};
+use knotdock::output::run_folder::Clock;
 use knotdock::search::deadline::Deadline;
 
 use crate::inputs::native::NativeFiles;
@@ -58,10 +55,7 @@ impl Docking {
             (request.plan(console)?, None, None)
         } else {
             let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
-            let end = wanted
-                .budget
-                .and_then(|budget| Duration::try_from_secs_f64(budget).ok())
-                .and_then(|budget| clock.monotonic.checked_add(budget));
+            let end = wanted.budget.and_then(|budget| clock.after(budget));
             let deadline = end.map(|end| deadline(&prepared.plan, end));
             (prepared, Some(chosen), deadline)
         };
@@ -192,39 +186,4 @@ fn plan_within(
         error.unwrap_or_default()
     ));
     Ok((prepared, chosen))
-}
-
-/// When the run began.
-pub struct Clock {
-    wall: SystemTime,
-    monotonic: Instant,
-}
-
-impl Clock {
-    /// Now.
-    pub fn start() -> Self {
-        Self {
-            wall: SystemTime::now(),
-            monotonic: Instant::now(),
-        }
-    }
-
-    /// Seconds since then.
-    pub fn seconds(&self) -> f64 {
-        self.monotonic.elapsed().as_secs_f64()
-    }
-
-    pub(super) fn timing(&self, outcome: &DockOutcome) -> Timing {
-        Timing {
-            // A clock set before 1970 says nothing.
-            started_unix_seconds: self
-                .wall
-                .duration_since(UNIX_EPOCH)
-                .map_or(0, |since| since.as_secs()),
-            wall_seconds: self.seconds(),
-            stages: outcome.timing.clone(),
-            effects: EffectTime::of(&outcome.effects),
-            peak_memory_bytes: process::peak(),
-        }
-    }
 }

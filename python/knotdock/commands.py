@@ -13,14 +13,14 @@ from typing import Any
 from knotdock import _knotdock
 from knotdock.progress import ProgressBar
 
-__all__ = ["KnotdockWarning", "keyword_name", "run_command", "words_of"]
+__all__ = ["KnotdockWarning", "Listener", "keyword_name", "run_command", "text_of", "words_of"]
 
 
 class KnotdockWarning(UserWarning):
     """A warning of knotdock about its input or its results."""
 
 
-class _Listener:
+class Listener:
     """Hears what a command says: warnings become Python's, failures of parts are collected."""
 
     def __init__(self, progress: bool | None) -> None:
@@ -47,11 +47,12 @@ class _Listener:
         self._bar.close()
 
 
-def _text(value: Any) -> str:
+def text_of(value: Any) -> str:
+    """A value as the text of a command line."""
     if isinstance(value, (str, os.PathLike)):
         return os.fspath(value)
     if isinstance(value, Iterable):
-        return ",".join(_text(part) for part in value)
+        return ",".join(text_of(part) for part in value)
     return str(value)
 
 
@@ -83,12 +84,12 @@ def words_of(options: dict[str, Any]) -> list[str]:
         if value is True:
             words.append(option)
         elif name in _of_files():
-            line = value if isinstance(value, (int, float)) else json.dumps(_text(value))
+            line = value if isinstance(value, (int, float)) else json.dumps(text_of(value))
             words.append(f"--config={_of_files()[name]}.{name}={line}")
         elif name == "config" and isinstance(value, (list, tuple)):
-            words += [f"{option}={_text(file)}" for file in value]
+            words += [f"{option}={text_of(file)}" for file in value]
         else:
-            words.append(f"{option}={_text(value)}")
+            words.append(f"{option}={text_of(value)}")
     return words
 
 
@@ -121,13 +122,13 @@ def run_command(
         InputError: the input or an option cannot be used.
         KnotdockError: the command failed otherwise.
     """
-    files = [_text(argument) for argument in arguments]
+    files = [text_of(argument) for argument in arguments]
     # A file whose name begins with a dash is no option.
     dashes = ["--"] if any(file.startswith("-") for file in files) else []
     words = [command, *files, *words_of(options)] if not dashes else [command, *words_of(options), *dashes, *files]
     if after:
         words += ["--", *after]
-    listener = _Listener(progress)
+    listener = Listener(progress)
     try:
         result, _ = _knotdock.call(words, listener)
     finally:

@@ -10,9 +10,11 @@ import textwrap
 from typing import TYPE_CHECKING, Any
 
 from knotdock import _knotdock
-from knotdock.commands import keyword_name, run_command
+from knotdock.commands import Listener, keyword_name, run_command, text_of
+from knotdock.errors import InputError
 from knotdock.inputs import given
-from knotdock.run import Run
+from knotdock.molecule import Molecule
+from knotdock.run import MemoryRun, Run
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -37,7 +39,8 @@ def dock(
 
     Args:
         receptor: what stays: a path (perhaps with chains, `"file.pdb:H,L"`), the text of a PDB or mmCIF file, a
-            structure of biotite, Biopython or gemmi, balls (n, 4), or a mesh as a pair of vertices and triangles.
+            structure of biotite, Biopython or gemmi, balls (n, 4), or a mesh as a pair of vertices and triangles. Two
+            of `Molecule` are docked in memory: no file is written, and `output` is left out.
         ligand: what moves, likewise; none with `symmetry`.
         output: directory of the run; by default a temporary one, which goes with the run unless it is saved.
         progress: whether a progress bar is shown; by default where a terminal or a notebook is there to see it.
@@ -51,6 +54,11 @@ def dock(
 
     Further keywords are options of the command line, `native` and `force` among them, and:
     """
+    if isinstance(receptor, Molecule):
+        if output is not None:
+            message = "a docking of molecules in memory has no directory"
+            raise InputError(message, None, None, "leave out `output`, and save the run that is returned")
+        return _in_memory(receptor, receptor if ligand is None else ligand, progress, dict(options))
     temporary = tempfile.TemporaryDirectory(prefix="knotdock-")
     directory = pathlib.Path(temporary.name, "run") if output is None else pathlib.Path(output)
     inputs = pathlib.Path(temporary.name, "inputs")
@@ -71,6 +79,19 @@ def dock(
         # Beside run.json inputs are found again, wherever the directory is moved.
         _knotdock.add(directory, sorted(inputs.iterdir()))
     return Run(directory, _temporary=temporary if output is None else None)
+
+
+def _in_memory(receptor: Molecule, ligand: Any, progress: bool | None, options: dict[str, Any]) -> Run:
+    if not isinstance(ligand, Molecule):
+        message = "the receptor is a Molecule and the ligand is not"
+        raise InputError(message, None, None, "read both with `Molecule.read`, or give both as files or structures")
+    given = {name.rstrip("_"): value for name, value in options.items() if value is not None and value is not False}
+    texts = [(name, "true" if value is True else text_of(value)) for name, value in given.items()]
+    listener = Listener(progress)
+    try:
+        return MemoryRun(_knotdock.dock(receptor._inner, ligand._inner, texts, listener))
+    finally:
+        listener.close()
 
 
 def _describe() -> None:

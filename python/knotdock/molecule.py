@@ -27,6 +27,7 @@ class Molecule:
     """
 
     def __init__(self, inner: _knotdock.Molecule) -> None:
+        self._inner = inner
         self.positions: np.ndarray = inner.positions
         self.radii: np.ndarray = inner.radii
         self.labels: dict[str, np.ndarray] = {name: np.asarray(values) for name, values in inner.labels.items()}

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import io
 import json
 import os
 import pathlib
@@ -11,12 +12,13 @@ from typing import Any, Literal
 
 import numpy as np
 
+from knotdock import _knotdock
 from knotdock.commands import run_command
 from knotdock.errors import InputError
 from knotdock.inputs import given
 from knotdock.tables import Frame, read_table
 
-__all__ = ["Run"]
+__all__ = ["MemoryRun", "Run"]
 
 
 class Run:
@@ -120,4 +122,41 @@ class Run:
             message = "there is something in the way"
             raise InputError(message, os.fspath(directory), None, "name a directory that is not there yet")
         shutil.copytree(self.directory, directory)
+        return Run(directory)
+
+
+class MemoryRun(Run):
+    """A docking of two molecules in memory, as `knotdock.dock(Molecule, Molecule)` returns it. `save` writes it."""
+
+    def __init__(self, inner: _knotdock.Run) -> None:
+        self._inner = inner
+        self._table = inner.table()
+
+    def __repr__(self) -> str:
+        return f"<Run of {len(self.scores)} poses in memory>"
+
+    def table(self, frame: Frame = "pandas") -> Any:
+        """The table of poses, best first; see `Run.table`."""
+        return read_table(io.StringIO(self._table), frame)
+
+    @property
+    def record(self) -> dict[str, Any]:
+        """Inputs, options, effects, errors and times, as in run.json."""
+        return json.loads(self._inner.record())
+
+    def complex(self, rank: int, format: Literal["pdb", "cif"] | None = None) -> str:
+        """The complex of a rank, from 1, as the text of a PDB file, or mmCIF where PDB cannot hold it."""
+        if format is not None:
+            message = "a run in memory chooses the format of its complexes"
+            raise InputError(message, None, None, "leave out the format, or save the run first")
+        return self._inner.complex(rank)
+
+    def evaluate(self, native: Any, frame: Frame = "pandas", **options: Any) -> Any:
+        """How near each pose is to a known complex; see `Run.evaluate`."""
+        with tempfile.TemporaryDirectory(prefix="knotdock-") as folder:
+            return self.save(pathlib.Path(folder, "run")).evaluate(native, frame, **options)
+
+    def save(self, directory: str | os.PathLike[str]) -> Run:
+        """Write the run into a directory that holds no other; the run there."""
+        self._inner.write(directory)
         return Run(directory)

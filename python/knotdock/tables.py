@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import csv
 import gzip
+import io
 import itertools
 import os
 from collections.abc import Iterator
@@ -16,13 +17,13 @@ __all__ = ["Frame", "iterate_poses", "read_poses", "read_results", "read_table",
 Frame = Literal["pandas", "polars", "numpy"]
 
 
-def read_table(path: str | os.PathLike[str], frame: Frame = "pandas") -> Any:
-    """A table as a pandas or polars DataFrame, or as a dict of NumPy arrays by column.
+def read_table(path: str | os.PathLike[str] | io.StringIO, frame: Frame = "pandas") -> Any:
+    """A table, of a file or of text, as a pandas or polars DataFrame, or as a dict of NumPy arrays by column.
 
     Empty cells are NaN, or null in polars. A quote in front of a cell that a spreadsheet would take for a formula is
     taken off.
     """
-    path = os.fspath(path)
+    path = path if isinstance(path, io.StringIO) else os.fspath(path)
     if frame == "pandas":
         import pandas
 
@@ -51,13 +52,15 @@ def unquoted(cell: str) -> str:
     return cell[1:] if cell.startswith("'") and cell.lstrip("'")[:1] in tuple("=+-@\t\r") else cell
 
 
-def _arrays(path: str) -> dict[str, np.ndarray]:
+def _arrays(path: str | io.StringIO) -> dict[str, np.ndarray]:
     with _opened(path) as file:
         rows = csv.reader(file)
         return _columns(next(rows), rows)
 
 
-def _opened(path: str) -> Any:
+def _opened(path: str | io.StringIO) -> Any:
+    if isinstance(path, io.StringIO):
+        return path
     return gzip.open(path, "rt", newline="") if path.endswith(".gz") else open(path, newline="")
 
 

@@ -13,7 +13,7 @@ use std::time::Duration;
 
 use knotdock::output::files::added::add_files;
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
-use knotdock::progress::Ended;
+use knotdock::progress::{Ended, Progress};
 use knotdock_cli::Listener;
 use knotdock_structures::Error;
 use pyo3::prelude::*;
@@ -45,7 +45,7 @@ enum Event {
 
 /// Collects what a command says.
 #[derive(Default)]
-struct Events {
+pub struct Events {
     said: Mutex<Vec<Event>>,
     is_stopped: AtomicBool,
 }
@@ -109,6 +109,20 @@ impl Listener for Events {
     }
 }
 
+impl Progress for Events {
+    fn stage(&self, name: &str, total: u64) {
+        Listener::stage(self, name, total);
+    }
+
+    fn advance(&self, by: u64) {
+        Listener::advance(self, by);
+    }
+
+    fn go_on(&self) -> Result<(), Ended> {
+        Listener::go_on(self)
+    }
+}
+
 /// Runs a command by its words, such as `["dock", "a.pdb", "b.pdb"]`; its JSON object as text, or None, and its exit
 /// code. `listener` has methods `say(text)`, `warn(text)`, `error(text)`, `stage(name, total)` and `advance(steps)`.
 ///
@@ -120,13 +134,23 @@ pub fn call(
     words: Vec<OsString>,
     listener: &Bound<'_, PyAny>,
 ) -> PyResult<(Option<String>, u8)> {
+    let work = |events: &Events| knotdock_cli::call(words, events);
+    let (code, result) = work_beside(py, listener, work)?;
+    Ok((result, code))
+}
+
+/// Does work on a thread of its own while Python's hands on what it reports; what it gives, and its JSON object.
+pub fn work_beside<T: Send + 'static>(
+    py: Python<'_>,
+    listener: &Bound<'_, PyAny>,
+    work: impl FnOnce(&Events) -> Result<T, Error> + Send + 'static,
+) -> PyResult<(T, Option<String>)> {
     let events = Arc::new(Events::default());
     let (sender, mut receiver) = channel();
     let heard = Arc::clone(&events);
     let work = move || {
-        let done = knotdock_cli::call(words, heard.as_ref());
-        // Nobody waits for a command that was left to itself.
-        let _ = sender.send(done);
+        // Nobody waits for work that was left to itself.
+        let _ = sender.send(work(heard.as_ref()));
     };
     let thread = Builder::new()
         .name("knotdock".to_owned())
@@ -134,10 +158,10 @@ pub fn call(
         .spawn(work)?;
     let mut interrupted: Option<PyErr> = None;
     let mut result = None;
-    let done: Option<Result<u8, Error>> = loop {
+    let done: Option<Result<T, Error>> = loop {
         let (waited, back) = py.detach(move || (receiver.recv_timeout(LOOK), receiver));
         receiver = back;
-        // What a listener raises ends the command as Ctrl-C does.
+        // What a listener raises ends the work as Ctrl-C does.
         let looked = tell(listener, &events, &mut result).and_then(|()| py.check_signals());
         if let Err(error) = looked {
             if interrupted.is_some() {
@@ -157,7 +181,7 @@ pub fn call(
         return Err(error);
     }
     match done {
-        Some(Ok(code)) if !panicked => Ok((result, code)),
+        Some(Ok(done)) if !panicked => Ok((done, result)),
         Some(Err(failure)) => Err(exception(py, &failure)),
         _ => Err(fault(py)),
     }

@@ -8,6 +8,7 @@ mod correlator;
 mod failure;
 mod molecule;
 mod options;
+mod run;
 
 use pyo3::prelude::*;
 
@@ -26,4 +27,6 @@ mod _knotdock {
     use super::molecule::Molecule;
     #[pymodule_export]
     use super::options::options;
+    #[pymodule_export]
+    use super::run::{Run, dock};
 }

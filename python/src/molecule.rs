@@ -11,7 +11,7 @@ use crate::failure::exception;
 
 /// A molecule as knotdock reads it: the atoms that are docked.
 #[pyclass(frozen, module = "knotdock._knotdock")]
-pub struct Molecule(Inner);
+pub struct Molecule(pub Inner);
 
 #[pymethods]
 impl Molecule {

@@ -191,3 +191,25 @@ def test_each_stage_advances_by_its_own_steps(helices, options, monkeypatch):
     knotdock.dock(*helices, **options)
     assert [name for name, _, _ in stages][:2] == ["prepare", "search"]
     assert all(total > 0 and steps == total for _, total, steps in stages), stages
+
+
+def test_molecules_are_docked_in_memory(helices, options, tmp_path):
+    molecules = [knotdock.Molecule.read(file) for file in helices]
+    run = knotdock.dock(*molecules, **options, lambda_=8)
+    of_files = knotdock.dock(*helices, **options, lambda_=8)
+    assert np.array_equal(run.scores, of_files.scores)
+    assert run.complex(1) == of_files.complex(1)
+    assert run.record["options"] == of_files.record["options"]
+    saved = run.save(tmp_path / "saved")
+    for name in ("poses.csv", "interface.csv", "view.pml", "top/rank_0001.pdb"):
+        assert (saved.directory / name).read_bytes() == (of_files.directory / name).read_bytes(), name
+    for wrong, message in (
+        ({"waters": "keep"}, "option of reading"),
+        ({"poses": 0}, "--poses is 0"),
+        ({"gravity": 1}, "no option gravity"),
+        ({"output": tmp_path / "run"}, "has no directory"),
+    ):
+        with pytest.raises(knotdock.InputError, match=message):
+            knotdock.dock(*molecules, **{**options, **wrong})
+    with pytest.raises(knotdock.InputError, match="no rank 999"):
+        run.complex(999)

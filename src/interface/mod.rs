@@ -16,6 +16,7 @@
 
 mod complementarity;
 mod contacts;
+pub mod run_contacts;
 mod score;
 mod shares;
 mod surface_dots;

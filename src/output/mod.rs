@@ -26,4 +26,5 @@
 
 pub mod files;
 pub mod records;
+pub mod run_folder;
 pub mod tables;

@@ -1,10 +1,8 @@
 //! The machine that a run is carried out on.
 
 use clap::Args;
-use knotdock::dock::plan::DockPlan;
 use knotdock::options::MachineOptions;
 use knotdock::options::values::{AT_LEAST_ONE, in_range};
-use knotdock::output::records::manifest::Machine;
 use knotdock::threads;
 
 use super::memory;
@@ -30,24 +28,5 @@ pub fn settled(options: &MachineOptions) -> MachineOptions {
     MachineOptions {
         threads: Some(options.thread_count()),
         memory: options.memory.or_else(memory::default_limit),
-    }
-}
-
-/// Where and how a plan is carried out.
-pub fn machine(plan: &DockPlan) -> Machine {
-    Machine {
-        system: std::env::consts::OS,
-        architecture: std::env::consts::ARCH,
-        hardware_threads: threads::or_all(None),
-        threads: plan.options.machine.thread_count(),
-        rotations_in_flight: plan.in_flight(),
-        memory_limit_bytes: plan.options.machine.memory,
-        memory_estimate_bytes: plan.memory_bytes(),
-        memory_stage: plan.largest_stage(),
-        adapter: None,
-        command: std::env::args_os()
-            .map(|word| word.to_string_lossy().into_owned())
-            .collect(),
-        chosen: None,
     }
 }

@@ -13,7 +13,7 @@ use serde_json::Value;
 use crate::arguments::conformations::ConformationArguments;
 use crate::arguments::machine::settled;
 use crate::arguments::options::{GivenOptions, OfDock, OptionArguments};
-use crate::docking::{Clock, Docking};
+use crate::docking::Docking;
 use crate::ensemble::Ensemble;
 use crate::inputs::bodies::Bodies;
 use crate::inputs::conformations::{Conformation, conformations};
@@ -21,6 +21,7 @@ use crate::inputs::molecules::label;
 use crate::inputs::native::NativeArguments;
 use crate::inputs::request::Request;
 use crate::messages::console::Console;
+use knotdock::output::run_folder::Clock;
 use knotdock_structures::Error;
 
 /// Dock a ligand to a receptor and rank the poses.

@@ -97,7 +97,10 @@ impl Export {
             arrangement,
         } in &exports
         {
-            let of_run = bodies.write(rows, *arrangement, (export.stage().folder(), format))?;
+            let of_run =
+                bodies
+                    .placed()
+                    .write(rows, *arrangement, (export.stage().folder(), format))?;
             let names = rows.iter().zip(of_run.names);
             written.extend(names.map(|(row, name)| (row.rank, name, of_run.chains.clone())));
         }

@@ -18,7 +18,8 @@ use knotdock::progress::{Ended, Progress};
 use knotdock::threads;
 use serde_json::json;
 
-use crate::arguments::machine::{machine, settled};
+use crate::arguments::machine::settled;
+use knotdock::output::run_folder::machine;
 use crate::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
 use crate::inputs::native::NativeArguments;
 use crate::inputs::request::{Known, Request};

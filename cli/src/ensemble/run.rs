@@ -14,7 +14,8 @@ use knotdock::rank::cluster::RigidBody;
 use serde_json::Value;
 
 use crate::arguments::options::GivenOptions;
-use crate::docking::{Clock, Docking, held_by_another};
+use crate::docking::{Docking, held_by_another};
+use knotdock::output::run_folder::Clock;
 use crate::ensemble::laid::{Laid, LaidSides};
 use crate::ensemble::place::Place;
 use crate::inputs::bodies::Bodies;

@@ -18,12 +18,12 @@ use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
 use serde_json::{Value, json};
 
-use crate::docked::write_scripts;
 use crate::ensemble::laid::Laid;
 use crate::ensemble::place::Place;
 use crate::ensemble::run::Ensemble;
 use crate::inputs::bodies::Bodies;
 use crate::messages::console::Console;
+use knotdock::output::run_folder::write_scripts;
 use knotdock_structures::Error;
 
 impl Ensemble {
@@ -81,7 +81,9 @@ impl Ensemble {
             }
             let specs = self.laid(member).map(|laid| laid.spec.clone());
             let bodies = Bodies::of(specs, &self.given.options)?;
-            let written = bodies.write(&own, Arrangement::Pair, (folder, None))?;
+            let written = bodies
+                .placed()
+                .write(&own, Arrangement::Pair, (folder, None))?;
             let chains = written.chains.unwrap_or_default();
             let names = own.iter().zip(&written.names);
             viewed.extend(names.map(|(row, name)| ViewedComplex::new(row.rank, name, &chains)));

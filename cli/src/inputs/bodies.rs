@@ -1,6 +1,7 @@
 //! The two bodies of a run: molecules or meshes, and what differs between them.
 
 use knotdock::dock::scene::ring_axis;
+use knotdock::output::run_folder;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -8,14 +9,12 @@ use crate::report::{ReportBodies, RunContacts};
 use knotdock::dock::pair::{GivenLengths, Pair, PreparedPair, Sampling, sampled_defaults};
 use knotdock::mesh::{MeshOptions, MeshPair, MeshSceneError};
 use knotdock::options::DockOptions;
-use knotdock::output::files::assemblies::write_assemblies;
-use knotdock::output::files::complexes::write_complexes;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
-use knotdock::output::tables::poses::{PoseRow, PoseTable};
+use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::Error;
-use knotdock_structures::molecule::{ChainMap, Format, InputSpec};
+use knotdock_structures::molecule::InputSpec;
 use knotdock_structures::sampling::weights::FittedWeights;
 
 use crate::inputs::ball_files::ball_file_of;
@@ -31,14 +30,6 @@ pub enum Bodies {
     Molecules(Box<[Input; 2]>),
     /// Two meshes or files of balls, likewise.
     Meshes(Box<[ShapeInput; 2]>),
-}
-
-/// What was written of the first ranks.
-pub struct WrittenBodies {
-    /// Names of the files, in the order of the rows.
-    pub names: Vec<String>,
-    /// Chain names in complexes; none of meshes.
-    pub chains: Option<ChainMap>,
 }
 
 /// Names of the two sides.
@@ -184,29 +175,14 @@ impl Bodies {
         }
     }
 
-    /// Writes the bodies in the poses of `rows` into a folder, of a ring all its copies; molecules in a format, where
-    /// one is given.
-    pub fn write(
-        &self,
-        rows: &[PoseRow],
-        arrangement: Arrangement,
-        (folder, format): (&Path, Option<Format>),
-    ) -> Result<WrittenBodies, Error> {
+    /// The bodies as they are written.
+    pub fn placed(&self) -> run_folder::Bodies<'_> {
         match self {
             Self::Molecules(inputs) => {
-                let molecules = inputs.each_ref().map(|input| &input.molecule);
-                let written = write_complexes(molecules, arrangement, rows, "", (folder, format))?;
-                Ok(WrittenBodies {
-                    names: written.names,
-                    chains: Some(written.chains),
-                })
+                run_folder::Bodies::Molecules(inputs.each_ref().map(|input| &input.molecule))
             }
             Self::Meshes(inputs) => {
-                let [receptor, ligand] = inputs.as_ref();
-                Ok(WrittenBodies {
-                    names: write_assemblies(receptor.surface(), ligand.surface(), rows, folder)?,
-                    chains: None,
-                })
+                run_folder::Bodies::Solids(inputs.each_ref().map(ShapeInput::surface))
             }
         }
     }

@@ -154,17 +154,7 @@ impl Input {
 
     /// The structure for run.json.
     pub fn entry(&self) -> Result<InputEntry, Error> {
-        let mut report = serde_json::to_value(&self.molecule.report).map_err(Error::machine)?;
-        if let Some(report) = report.as_object_mut() {
-            // The record has the path, and absolute: the one typed would differ when --rerun repeats the run.
-            report.remove("file");
-        }
-        Ok(InputEntry {
-            record: self.record.clone(),
-            atoms: Some(self.molecule.atoms.len()),
-            sampling: None,
-            report,
-        })
+        InputEntry::of_molecule(self.record.clone(), &self.molecule)
     }
 }
 

@@ -20,7 +20,6 @@
 //! | `page/` | style and scripts |
 
 mod columns;
-mod contacts;
 mod html;
 mod list;
 mod lists;
@@ -34,11 +33,8 @@ mod shown;
 mod solids;
 mod viewer;
 
-pub use contacts::RunContacts;
+pub use knotdock::interface::run_contacts::{MAX_ROWS, RunContacts};
 pub use lists::Listed;
 pub use run_parts::{ReportBodies, RunReport};
 pub use solids::SolidsReport;
 pub use viewer::{Viewer, ViewerError};
-
-/// Most rows that a report shows, the best ones; the table of the run has all.
-pub const MAX_ROWS: usize = 2000;

@@ -3,7 +3,7 @@
 use knotdock_structures::molecule::Molecule;
 use serde_json::Value;
 
-use crate::report::contacts::RunContacts;
+use crate::report::RunContacts;
 use knotdock::options::DockOptions;
 use knotdock::output::files::assemblies::Surface;
 use knotdock::output::tables::poses::PoseTable;

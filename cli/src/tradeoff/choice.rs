@@ -1,14 +1,10 @@
 //! The setting for an accuracy that is wanted or a time that may be spent.
 
-use knotdock_structures::Error;
-use std::time::Instant;
-
-use crate::tradeoff::cost_model::{CostModel, LADDER, Rung, Workload};
+use knotdock::dock::cost::{CostModel, LADDER, Rung, Workload};
 use knotdock::dock::pair::Preparer;
-use knotdock::dock::plan::DockPlan;
 use knotdock::options::DockOptions;
 use knotdock::output::records::manifest::Chosen;
-use knotdock::search::deadline::Deadline;
+use knotdock_structures::Error;
 
 /// Fewest rotations that a docking within a budget takes: below, an answer is a matter of luck.
 pub const MIN_ROTATIONS: usize = 600;
@@ -24,16 +20,6 @@ pub struct Wanted {
     pub accuracy: Option<f64>,
     /// Seconds on the clock.
     pub budget: Option<f64>,
-}
-
-/// The deadline of a planned run that is to end at `end`, by what the model expects it to take.
-pub fn deadline(plan: &DockPlan, end: Instant) -> Deadline {
-    let (model, work) = (CostModel::BUILT_IN, Workload::of(plan));
-    let threads = plan.in_flight();
-    let rotation = model.rotation_seconds(&work) / threads as f64;
-    Deadline::new(end, rotation, move |rotations| {
-        model.seconds_after_search(&work, rotations, threads)
-    })
 }
 
 /// Chooses tolerance and spacing by the accuracy, then rotations by the budget, into `options`.

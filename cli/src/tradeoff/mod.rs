@@ -10,7 +10,6 @@ pub mod advice;
 mod agreement;
 mod change;
 pub mod choice;
-pub mod cost_model;
 mod front;
 pub mod measured;
 pub mod plot;

@@ -16,6 +16,37 @@ use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
 
+/// A complex of a run.
+#[derive(Clone, Debug)]
+#[non_exhaustive]
+pub struct Complex {
+    /// Its format: PDB, or mmCIF for inputs in it and for complexes that do not fit into PDB.
+    pub format: Format,
+    /// Its file as text.
+    pub text: String,
+}
+
+/// The complex of a row; of a ring all copies.
+///
+/// # Errors
+/// [`Error`] for a row whose pose is not one of such a ring.
+pub fn complex(
+    [receptor, ligand]: [&Molecule; 2],
+    arrangement: Arrangement,
+    row: &PoseRow,
+) -> Result<Complex, Error> {
+    let others = placed_copies(ligand, arrangement, row, Path::new(""))?;
+    let molecules = with(receptor, &others);
+    let format = complex_format(&molecules);
+    let mut text = Vec::new();
+    let remarks = remarks(row, arrangement, "");
+    write_complex(&mut text, format, &molecules, &remarks).map_err(Error::machine)?;
+    Ok(Complex {
+        format,
+        text: String::from_utf8(text).map_err(Error::machine)?,
+    })
+}
+
 /// Complexes as written.
 #[derive(Clone, Debug)]
 pub struct Written {

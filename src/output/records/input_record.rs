@@ -5,7 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use knotdock_structures::molecule::InputSpec;
+use knotdock_structures::molecule::{Format, InputSpec, Molecule, file_bytes, write_molecule};
 use serde::{Deserialize, Serialize};
 
 use crate::memory_size::in_words;
@@ -77,6 +77,24 @@ impl InputRecord {
             model: input.model,
             sha256: sha256(bytes),
         }
+    }
+
+    /// The record of a molecule: of its file, or of one made in memory with the checksum of its atoms in mmCIF.
+    ///
+    /// # Errors
+    /// [`Error`] if the file cannot be read again.
+    pub fn of_molecule(molecule: &Molecule) -> Result<Self, Error> {
+        if let Some(spec) = &molecule.report.source {
+            return Ok(Self::new(spec, &file_bytes(&spec.path)?));
+        }
+        let mut bytes = Vec::new();
+        write_molecule(&mut bytes, Format::Mmcif, molecule, &[]).map_err(Error::machine)?;
+        Ok(Self {
+            path: PathBuf::new(),
+            chains: None,
+            model: None,
+            sha256: sha256(&bytes),
+        })
     }
 
     /// Whether the other has the same content, and the same chains and model are read of it.

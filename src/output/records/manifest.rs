@@ -6,7 +6,8 @@
 use std::collections::BTreeMap;
 use std::io;
 
-use knotdock_structures::molecule::ChainMap;
+use knotdock_structures::Error;
+use knotdock_structures::molecule::{ChainMap, Molecule};
 use serde::Serialize;
 use serde_json::Value;
 
@@ -42,6 +43,26 @@ pub struct InputEntry {
     pub sampling: Option<SampledPart>,
     /// What was kept, dropped and altered.
     pub report: Value,
+}
+
+impl InputEntry {
+    /// The entry of a molecule.
+    ///
+    /// # Errors
+    /// [`Error`] if the report cannot be put into JSON, which would be a fault of the program.
+    pub fn of_molecule(record: InputRecord, molecule: &Molecule) -> Result<Self, Error> {
+        let mut report = serde_json::to_value(&molecule.report).map_err(Error::machine)?;
+        if let Some(report) = report.as_object_mut() {
+            // The record has the path, and absolute: the one typed would differ when --rerun repeats the run.
+            report.remove("file");
+        }
+        Ok(Self {
+            record,
+            atoms: Some(molecule.atoms.len()),
+            sampling: None,
+            report,
+        })
+    }
 }
 
 /// The inputs of a run.

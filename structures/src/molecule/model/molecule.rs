@@ -3,6 +3,7 @@
 use crate::molecule::model::atom::Atom;
 use crate::molecule::model::format::Format;
 use crate::molecule::model::report::ReadReport;
+use crate::molecule::{InputSpec, ReadOptions, read};
 
 /// A structure as docked: its kept atoms in file order.
 #[derive(Clone, Debug, PartialEq)]
@@ -21,6 +22,32 @@ pub struct Molecule {
 }
 
 impl Molecule {
+    /// Reads `FILE` (PDB or mmCIF, also gzip-compressed) or `FILE:H,L`, which picks chains, with the default options:
+    /// see [`crate::molecule::read`].
+    ///
+    /// ```
+    /// use knotdock_structures::molecule::Molecule;
+    ///
+    /// # let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    /// let molecule = Molecule::read(&format!("{folder}/1ppe_ligand_unbound.pdb"))?;
+    /// assert_eq!(molecule.atoms.len(), 221);
+    /// # Ok::<(), knotdock_structures::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// [`Error`](crate::Error) for a file that cannot be read.
+    pub fn read(file: &str) -> Result<Self, crate::Error> {
+        Self::read_with(file, &ReadOptions::default())
+    }
+
+    /// As [`Self::read`], with options.
+    ///
+    /// # Errors
+    /// As [`Self::read`].
+    pub fn read_with(file: &str, options: &ReadOptions) -> Result<Self, crate::Error> {
+        Ok(read(&InputSpec::parse(file)?, options)?)
+    }
+
     /// A molecule made in memory, with an empty report.
     pub fn new(atoms: Vec<Atom>, format: Format) -> Self {
         Self {

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 
 use serde::Serialize;
 
+use crate::molecule::InputSpec;
 use crate::molecule::model::cut_ends::CutEnd;
 use crate::molecule::model::format::Format;
 use crate::molecule::model::groups::GroupKind;
@@ -15,6 +16,9 @@ use crate::molecule::model::groups::GroupKind;
 pub struct ReadReport {
     /// The file as given.
     pub file: String,
+    /// What was read: file, chains and model; `None` for a molecule made in memory.
+    #[serde(skip)]
+    pub source: Option<InputSpec>,
     /// The format found, by content first.
     pub format: Option<Format>,
     /// Whether the file was gzip-compressed.

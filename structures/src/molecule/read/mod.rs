@@ -151,6 +151,7 @@ fn read_telling(
 
     let mut report = ReadReport {
         file: file.display().to_string(),
+        source: Some(spec.clone()),
         format: Some(format),
         compressed: source.compressed,
         ..ReadReport::default()

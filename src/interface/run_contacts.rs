@@ -5,10 +5,12 @@ use std::collections::HashSet;
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
 
-use crate::report::MAX_ROWS;
-use knotdock::interface::{CONSENSUS, Contact, ContactFinder, ResidueShare, residue_shares};
-use knotdock::output::tables::poses::PoseTable;
-use knotdock::pose_space::arrangement::Arrangement;
+use crate::interface::{CONSENSUS, Contact, ContactFinder, ResidueShare, residue_shares};
+use crate::output::tables::poses::PoseTable;
+use crate::pose_space::arrangement::Arrangement;
+
+/// Rows whose contacts are listed, and that reports show.
+pub const MAX_ROWS: usize = 2000;
 
 /// The contacts of the first [`MAX_ROWS`] rows of a run of molecules.
 pub struct RunContacts<'a> {

@@ -19,9 +19,12 @@
 //! The fast path's error hangs on tolerance and spacing. [`LADDER`] holds settings of both, cheapest first, each with
 //! the error that it was measured to make.
 
-use knotdock::dock::plan::DockPlan;
-use knotdock::options::DockOptions;
-use knotdock::options::Precision;
+use std::time::Instant;
+
+use crate::dock::plan::DockPlan;
+use crate::options::DockOptions;
+use crate::options::Precision;
+use crate::search::deadline::Deadline;
 use knotdock_scoring::terms::effect::Effect;
 
 /// Coefficients of the time, in seconds.
@@ -238,6 +241,16 @@ fn expected_rank(plan: &DockPlan) -> f64 {
     (share * components).max(1.0)
 }
 
+/// The deadline of a planned run that is to end at `end`, by what the model expects it to take.
+pub fn deadline(plan: &DockPlan, end: Instant) -> Deadline {
+    let (model, work) = (CostModel::BUILT_IN, Workload::of(plan));
+    let threads = plan.in_flight();
+    let rotation = model.rotation_seconds(&work) / threads as f64;
+    Deadline::new(end, rotation, move |rotations| {
+        model.seconds_after_search(&work, rotations, threads)
+    })
+}
+
 /// A setting of the fast path with the error that it makes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Rung {
@@ -252,7 +265,7 @@ pub struct Rung {
 }
 
 /// Cheapest first, the defaults before all: each error the largest measured on the example pair, 1AVX, 1EAW and 7CEI.
-/// `cargo bench --bench cost_model` sets what is made beside what is expected. Larger tolerances are left out, for
+/// Larger tolerances are left out, for
 /// they save next to nothing: every pose that the larger error leaves in doubt is scored exactly. So are wider
 /// spacings, which keep the same modes.
 pub const LADDER: [Rung; 8] = [

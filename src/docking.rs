@@ -1,0 +1,235 @@
+//! Docking in memory: two molecules in, ranked poses out.
+//!
+//! ```
+//! use knotdock::{DockOptions, Molecule};
+//!
+//! # fn main() -> Result<(), knotdock::Error> {
+//! # let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/structures/examples");
+//! # let file = |side: &str| format!("{folder}/1ppe_{side}_unbound.pdb");
+//! # let directory = std::env::temp_dir().join(format!("knotdock-doc-{}", std::process::id()));
+//! let receptor = Molecule::read(&file("receptor"))?;
+//! let ligand = Molecule::read(&file("ligand"))?;
+//! let mut options = DockOptions::default();
+//! options.search.rotations = 100;
+//! let run = knotdock::dock(&receptor, &ligand, &options)?;
+//! assert!(run.poses()[0].score >= run.poses()[1].score);
+//! assert!(run.complex(1)?.text.contains("ATOM"));
+//! run.write(&directory)?;
+//! assert!(directory.join("poses.csv").is_file());
+//! # std::fs::remove_dir_all(&directory).unwrap();
+//! # Ok(())
+//! # }
+//! ```
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::Instant;
+
+use knotdock_structures::Error;
+use knotdock_structures::molecule::Molecule;
+
+use crate::dock::cost::deadline;
+use crate::dock::outcome::DockOutcome;
+use crate::dock::pair::PreparedPair;
+use crate::dock::plan::DockPlan;
+use crate::dock::run::dock_until;
+use crate::interface::run_contacts::{MAX_ROWS, RunContacts};
+use crate::options::DockOptions;
+use crate::output::files::complexes::{Complex, complex};
+use crate::output::files::own_files::RUN;
+use crate::output::files::staging::Staging;
+use crate::output::records::input_record::InputRecord;
+use crate::output::records::manifest::{InputEntry, Inputs};
+use crate::output::run_folder::{Bodies, Clock, FinishedRun};
+use crate::output::tables::restraints;
+use crate::output::tables::run_table::pose_rows;
+use crate::progress::{NoProgress, Progress};
+use crate::rank::ranking::RankedPose;
+use crate::threads;
+
+/// Docks a ligand to a receptor.
+///
+/// # Errors
+/// [`Error`] for options or molecules that cannot be docked.
+pub fn dock(receptor: &Molecule, ligand: &Molecule, options: &DockOptions) -> Result<Run, Error> {
+    Docking::new(receptor, ligand).options(options).run()
+}
+
+/// A docking of two molecules. With [`SearchOptions::symmetry`](crate::options::SearchOptions::symmetry) the ligand is
+/// the receptor again.
+#[must_use]
+pub struct Docking<'a> {
+    molecules: [&'a Molecule; 2],
+    options: DockOptions,
+    progress: &'a dyn Progress,
+    end: Option<Instant>,
+}
+
+impl<'a> Docking<'a> {
+    /// A docking with the default options.
+    pub fn new(receptor: &'a Molecule, ligand: &'a Molecule) -> Self {
+        Self {
+            molecules: [receptor, ligand],
+            options: DockOptions::default(),
+            progress: &NoProgress,
+            end: None,
+        }
+    }
+
+    /// Sets the options.
+    pub fn options(self, options: &DockOptions) -> Self {
+        Self {
+            options: options.clone(),
+            ..self
+        }
+    }
+
+    /// Sets the receiver of the run's progress, which can end the run.
+    pub fn progress(self, progress: &'a dyn Progress) -> Self {
+        Self { progress, ..self }
+    }
+
+    /// Sets a time by which the run ends: the search stops when the rest of the run just fits, at the pace measured so
+    /// far. [`DockOptions::stopped`] of [`Run::options`] repeats such a run.
+    pub fn deadline(self, end: Instant) -> Self {
+        Self {
+            end: Some(end),
+            ..self
+        }
+    }
+
+    /// Docks, on as many threads as the options state.
+    ///
+    /// # Errors
+    /// [`Error`] for options or molecules that cannot be docked, and if the progress ends the run.
+    pub fn run(self) -> Result<Run, Error> {
+        let clock = Clock::start();
+        let options = self.options.of_rings(true);
+        threads::on(options.machine.thread_count(), || {
+            let prepared = PreparedPair::molecules(self.molecules, &options)?;
+            let PreparedPair { plan, points, .. } = &prepared;
+            let deadline = self.end.map(|end| deadline(plan, end));
+            let outcome = dock_until(plan, points, deadline.as_ref(), self.progress)?;
+            Ok(Run {
+                molecules: self.molecules.map(Molecule::clone),
+                options: options.changed(|options| options.stopped = outcome.stopped),
+                prepared,
+                outcome,
+                clock,
+            })
+        })?
+    }
+}
+
+/// A docking run: ranked poses, and what they cost.
+pub struct Run {
+    molecules: [Molecule; 2],
+    options: DockOptions,
+    prepared: PreparedPair,
+    outcome: DockOutcome,
+    clock: Clock,
+}
+
+impl Run {
+    /// The poses, best first: one per cluster, or all with `no_cluster`.
+    pub fn poses(&self) -> &[RankedPose] {
+        &self.outcome.poses
+    }
+
+    /// The options, with the place where a run within a time stopped.
+    pub fn options(&self) -> &DockOptions {
+        &self.options
+    }
+
+    /// The plan.
+    pub fn plan(&self) -> &DockPlan {
+        &self.prepared.plan
+    }
+
+    /// Effects, errors and times.
+    pub fn outcome(&self) -> &DockOutcome {
+        &self.outcome
+    }
+
+    /// The complex of a rank, from 1.
+    ///
+    /// # Errors
+    /// [`Error`] for a rank that the run does not have.
+    pub fn complex(&self, rank: usize) -> Result<Complex, Error> {
+        let rows = pose_rows(&self.outcome.poses);
+        let row = rank.checked_sub(1).and_then(|index| rows.get(index));
+        let row = row.ok_or_else(|| {
+            Error::input(format!("there is no rank {rank}"))
+                .help(format!("name a rank from 1 to {}", rows.len()))
+        })?;
+        let arrangement = self.options.search.symmetry.into();
+        complex(self.molecules.each_ref(), arrangement, row)
+    }
+
+    /// The table of poses as CSV text: `poses.csv`.
+    ///
+    /// # Errors
+    /// [`Error`] if a row cannot be written as text.
+    pub fn table(&self) -> Result<String, Error> {
+        self.finished(|run| {
+            let mut text = Vec::new();
+            run.table().write_to(&mut text).map_err(Error::machine)?;
+            String::from_utf8(text).map_err(Error::machine)
+        })
+    }
+
+    /// The record of the run: inputs, options, effects, errors and times, as in `run.json` but for its list of files.
+    ///
+    /// # Errors
+    /// [`Error`] if the file of a molecule cannot be read again for its checksum.
+    pub fn record(&self) -> Result<String, Error> {
+        self.finished(|run| Ok(run.record(BTreeMap::new(), None)?.to_string()))
+    }
+
+    /// Writes the run into a directory that holds no other: what `knotdock dock` writes but for the report page.
+    ///
+    /// # Errors
+    /// [`Error`] for a directory that holds something else or cannot be written.
+    pub fn write(&self, directory: impl AsRef<Path>) -> Result<(), Error> {
+        let staging = Staging::open(RUN, directory.as_ref(), false)?;
+        self.finished(|run| run.stage(staging.stage()))?;
+        staging.commit()
+    }
+
+    /// Hands the parts of the run to a function.
+    fn finished<T>(
+        &self,
+        read: impl FnOnce(FinishedRun<'_>) -> Result<T, Error>,
+    ) -> Result<T, Error> {
+        let (plan, outcome) = (&self.prepared.plan, &self.outcome);
+        let [receptor, ligand] = self
+            .molecules
+            .each_ref()
+            .map(|molecule| InputEntry::of_molecule(InputRecord::of_molecule(molecule)?, molecule));
+        let inputs = Inputs {
+            receptor: receptor?,
+            ligand: ligand?,
+            native: None,
+        };
+        let further: Vec<_> = restraints::met(plan, &outcome.poses).into_iter().collect();
+        let molecules = self.molecules.each_ref();
+        let arrangement = self.options.search.symmetry.into();
+        let mut run = FinishedRun {
+            bodies: Bodies::Molecules(molecules),
+            inputs: &inputs,
+            options: &self.options,
+            plan,
+            outcome,
+            further: &further,
+            contacts: None,
+            matching: None,
+            chosen: None,
+            clock: &self.clock,
+        };
+        let shown = run.table().first(MAX_ROWS);
+        let ph = self.options.terms.ph;
+        let contacts = RunContacts::of(molecules, &shown, arrangement, ph);
+        run.contacts = Some(&contacts);
+        read(run)
+    }
+}

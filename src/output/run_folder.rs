@@ -1,0 +1,268 @@
+//! The folder of a run: `poses.csv`, complexes, restraints, interface and `run.json`.
+
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::{Instant, SystemTime, UNIX_EPOCH};
+
+use knotdock_structures::Error;
+use knotdock_structures::molecule::{ChainMap, Format, Molecule};
+use serde_json::Value;
+
+use crate::dock::memory::process;
+use crate::dock::outcome::DockOutcome;
+use crate::dock::plan::DockPlan;
+use crate::interface::run_contacts::RunContacts;
+use crate::options::DockOptions;
+use crate::output::files::assemblies::{Surface, write_assemblies};
+use crate::output::files::complexes::write_complexes;
+use crate::output::files::staging::Stage;
+use crate::output::files::viewers::{CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol};
+use crate::output::files::whole_file::to_json;
+use crate::output::records::manifest::{
+    Chosen, EffectTime, Inputs, Machine, Manifest, ManifestParts, Results, Timing,
+};
+use crate::output::tables::fields::Column;
+use crate::output::tables::interface_shares::{INTERFACE, write_shares};
+use crate::output::tables::poses::PoseRow;
+use crate::output::tables::restraints;
+use crate::output::tables::run_table::{RunTable, pose_rows};
+use crate::pose_space::arrangement::Arrangement;
+use crate::threads;
+
+/// The start of a run.
+#[derive(Clone, Copy, Debug)]
+pub struct Clock {
+    wall: SystemTime,
+    monotonic: Instant,
+}
+
+impl Clock {
+    /// A run that starts now.
+    pub fn start() -> Self {
+        Self {
+            wall: SystemTime::now(),
+            monotonic: Instant::now(),
+        }
+    }
+
+    /// Seconds since the start.
+    pub fn seconds(&self) -> f64 {
+        self.monotonic.elapsed().as_secs_f64()
+    }
+
+    /// The time that is so many seconds after the start; `None` for one that clocks do not reach.
+    pub fn after(&self, seconds: f64) -> Option<Instant> {
+        let time = std::time::Duration::try_from_secs_f64(seconds).ok()?;
+        self.monotonic.checked_add(time)
+    }
+
+    fn timing(&self, outcome: &DockOutcome) -> Timing {
+        Timing {
+            // A clock that is set before 1970 has no such seconds.
+            started_unix_seconds: self
+                .wall
+                .duration_since(UNIX_EPOCH)
+                .map_or(0, |since| since.as_secs()),
+            wall_seconds: self.seconds(),
+            stages: outcome.timing.clone(),
+            effects: EffectTime::of(&outcome.effects),
+            peak_memory_bytes: process::peak(),
+        }
+    }
+}
+
+/// The machine of a run, and how the plan uses it.
+pub fn machine(plan: &DockPlan) -> Machine {
+    Machine {
+        system: std::env::consts::OS,
+        architecture: std::env::consts::ARCH,
+        hardware_threads: threads::or_all(None),
+        threads: plan.options.machine.thread_count(),
+        rotations_in_flight: plan.in_flight(),
+        memory_limit_bytes: plan.options.machine.memory,
+        memory_estimate_bytes: plan.memory_bytes(),
+        memory_stage: plan.largest_stage(),
+        adapter: None,
+        command: std::env::args_os()
+            .map(|word| word.to_string_lossy().into_owned())
+            .collect(),
+        chosen: None,
+    }
+}
+
+/// Two bodies in the poses of a run.
+#[derive(Clone, Copy)]
+pub enum Bodies<'a> {
+    /// Molecules.
+    Molecules([&'a Molecule; 2]),
+    /// Surfaces of meshes, or of the spheres of balls.
+    Solids([Surface<'a>; 2]),
+}
+
+/// Bodies as written.
+#[derive(Clone, Debug)]
+pub struct WrittenBodies {
+    /// Names of the files, in the order of the rows.
+    pub names: Vec<String>,
+    /// Chain names in the complexes; `None` for solids.
+    pub chains: Option<ChainMap>,
+}
+
+impl Bodies<'_> {
+    /// Writes the bodies in the poses of `rows` into a folder, for rings all copies; molecules in a format, if one is
+    /// given.
+    ///
+    /// # Errors
+    /// [`Error`] for a folder or file that cannot be written.
+    pub fn write(
+        self,
+        rows: &[PoseRow],
+        arrangement: Arrangement,
+        (folder, format): (&Path, Option<Format>),
+    ) -> Result<WrittenBodies, Error> {
+        match self {
+            Self::Molecules(molecules) => {
+                let written = write_complexes(molecules, arrangement, rows, "", (folder, format))?;
+                Ok(WrittenBodies {
+                    names: written.names,
+                    chains: Some(written.chains),
+                })
+            }
+            Self::Solids([receptor, ligand]) => Ok(WrittenBodies {
+                names: write_assemblies(receptor, ligand, rows, folder)?,
+                chains: None,
+            }),
+        }
+    }
+}
+
+/// A finished run as it is written.
+pub struct FinishedRun<'a> {
+    /// The bodies.
+    pub bodies: Bodies<'a>,
+    /// The input files.
+    pub inputs: &'a Inputs,
+    /// The options.
+    pub options: &'a DockOptions,
+    /// The plan.
+    pub plan: &'a DockPlan,
+    /// The outcome.
+    pub outcome: &'a DockOutcome,
+    /// Columns of the table after those of the search.
+    pub further: &'a [Column],
+    /// The contacts of the first rows, of molecules.
+    pub contacts: Option<&'a RunContacts<'a>>,
+    /// Report on the match with a known complex, if there is one.
+    pub matching: Option<Value>,
+    /// The basis of the plan, if an accuracy or a time was requested.
+    pub chosen: Option<&'a Chosen>,
+    /// The start of the run.
+    pub clock: &'a Clock,
+}
+
+/// Files of a run that were staged.
+#[derive(Clone, Debug)]
+pub struct StagedRun {
+    /// Names of the complexes in `top/`.
+    pub complexes: Vec<String>,
+    /// `run.json`.
+    pub record: Value,
+}
+
+impl<'a> FinishedRun<'a> {
+    /// The table of poses.
+    pub fn table(&self) -> RunTable<'a> {
+        let choice = (self.plan.sharp(), self.options.output.diagnostics);
+        RunTable::new(&self.outcome.poses, choice, self.further)
+    }
+
+    /// Writes tables, complexes and record into the staging folder of a run.
+    ///
+    /// # Errors
+    /// [`Error`] for a file that cannot be written.
+    pub fn stage(&self, staging: &Stage) -> Result<StagedRun, Error> {
+        let Self {
+            options,
+            plan,
+            outcome,
+            ..
+        } = self;
+        if !plan.restraints.is_empty() {
+            staging.write("restraints.csv", |file| {
+                restraints::write_to(plan, &outcome.poses, file)
+            })?;
+        }
+        staging.write("poses.csv", |file| self.table().write_to(file))?;
+        let rows = pose_rows(&outcome.poses);
+        let top = rows.get(..options.output.write_top).unwrap_or(&rows);
+        let arrangement = options.search.symmetry.into();
+        let folder = staging.folder().join("top");
+        let written = self.bodies.write(top, arrangement, (&folder, None))?;
+        if let Some(chains) = &written.chains {
+            let names = written.names.iter().zip(top);
+            let viewed: Vec<ViewedComplex> = names
+                .map(|(name, row)| ViewedComplex::new(row.rank, name, chains))
+                .collect();
+            write_scripts(staging, &viewed)?;
+        }
+        if let Some(contacts) = self.contacts {
+            let [receptor, ligand] = contacts.shares();
+            let sides = [("receptor", &receptor[..]), ("ligand", &ligand[..])];
+            staging.write(INTERFACE, |file| write_shares(sides, file))?;
+        }
+        let record = self.record(staging.checksums()?, written.chains.as_ref())?;
+        staging.write("run.json", |file| to_json(file, &record))?;
+        Ok(StagedRun {
+            complexes: written.names,
+            record,
+        })
+    }
+
+    /// `run.json`, with the checksums of the other files by their paths and the chain names in the complexes.
+    ///
+    /// # Errors
+    /// [`Error`] if a part cannot be put into JSON, which would be a fault of the program.
+    pub fn record(
+        &self,
+        files: BTreeMap<String, String>,
+        chains: Option<&ChainMap>,
+    ) -> Result<Value, Error> {
+        let (plan, outcome) = (self.plan, self.outcome);
+        let manifest = Manifest::new(ManifestParts {
+            inputs: self.inputs,
+            options: self.options,
+            plan,
+            outcome,
+            results: Results {
+                poses: outcome.poses_kept,
+                clusters: outcome.clusters,
+                rows: outcome.poses.len(),
+                rotations: outcome.searched,
+            },
+            files,
+            chains,
+            matching: self.matching.clone(),
+            timing: self.clock.timing(outcome),
+            machine: Machine {
+                chosen: self.chosen.cloned(),
+                adapter: outcome.adapter.clone(),
+                ..machine(plan)
+            },
+        });
+        manifest
+            .and_then(serde_json::to_value)
+            .map_err(Error::machine)
+    }
+}
+
+/// Writes the scripts that show complexes in other programs, if there are any.
+///
+/// # Errors
+/// [`Error`] for a file that cannot be written.
+pub fn write_scripts(staging: &Stage, complexes: &[ViewedComplex]) -> Result<(), Error> {
+    if !complexes.is_empty() {
+        staging.write(PYMOL, |file| write_pymol(file, complexes))?;
+        staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;
+    }
+    Ok(())
+}
