@@ -198,11 +198,15 @@ impl Definition {
     /// The refusal of a value; `bound` states what it must be.
     pub fn refusal(&self, value: &str, bound: &str) -> Error {
         let name = &self.long;
-        let remedy = match self.is_of_files {
+        Error::input(format!("--{name} is {value}; {bound}")).help(self.remedy())
+    }
+
+    /// The place of the option's description.
+    pub(super) fn remedy(&self) -> String {
+        match self.is_of_files {
             true => format!("see `{}` in `knotdock preset default --all`", self.name),
-            false => format!("see --{name} in `knotdock dock --help`"),
-        };
-        Error::input(format!("--{name} is {value}; {bound}")).help(remedy)
+            false => format!("see --{} in `knotdock dock --help`", self.long),
+        }
     }
 
     /// The line of a file of options that gives the option a value, its table included: `terms.contact_weight=1.5`.

@@ -54,7 +54,26 @@ impl DockOptions {
     /// # Errors
     /// As those of [`Self::read_file`].
     pub fn read_toml(&mut self, text: &str, path: &Path) -> Result<Vec<GivenOption>, Error> {
-        let folder = path.parent().unwrap_or(Path::new(""));
+        self.read_entries(text, path, path.parent().unwrap_or(Path::new("")))
+    }
+
+    /// Sets the option of a line such as `terms.contact_weight=1.5`; returns it. A file that it names is looked for from
+    /// the working directory.
+    ///
+    /// # Errors
+    /// As those of [`Self::read_file`]; they name the line as a file.
+    pub fn read_line(&mut self, line: &str) -> Result<Vec<GivenOption>, Error> {
+        let read = self.read_entries(line, Path::new(line), Path::new(""));
+        read.map_err(|error| error.on_line(None))
+    }
+
+    /// Sets the options of a text, which errors call `path`. Files that it names are looked for from `folder`.
+    fn read_entries(
+        &mut self,
+        text: &str,
+        path: &Path,
+        folder: &Path,
+    ) -> Result<Vec<GivenOption>, Error> {
         let mut read = || {
             let document = DeTable::parse(text).map_err(|error| Fault {
                 span: error.span(),
@@ -107,19 +126,20 @@ impl DockOptions {
         let Some(option) = definitions().iter().find(is_named) else {
             return Err(no_option(name, subject.get_ref()));
         };
-        let fault = |error| Fault {
+        let fault = |error: Error| Fault {
             span: Some(value.span()),
-            error,
+            error: match error.file() {
+                Some(_) => error,
+                None => error.help(option.remedy()),
+            },
         };
         let text = text_of(option, value.get_ref()).map_err(fault)?;
         let read = option.read(self, &text, folder);
-        read.map_err(|error| match error.file() {
-            Some(_) => fault(error),
-            None => {
-                let remedy = option.refusal("", "");
-                let message = format!("{} = {text}: {error}", option.name());
-                fault(Error::input(message).help(remedy.remedy().unwrap_or_default()))
-            }
+        read.map_err(|error| {
+            fault(match error.file() {
+                Some(_) => error,
+                None => error.within(format!("{} = {text}", option.name())),
+            })
         })?;
         Ok(GivenOption {
             name: option.name(),
@@ -305,6 +325,23 @@ mod tests {
             remedy.ends_with("run.toml, line 2 names the file"),
             "{remedy}"
         );
+    }
+
+    /// A file that a line names is looked for from the working directory, and errors have no line.
+    #[test]
+    fn a_line_stands_for_a_file() {
+        let mut options = DockOptions::default();
+        let given = options.read_line("terms.contact_weight=1.5").unwrap();
+        assert_eq!(
+            (given[0].name, options.terms.contact_weight),
+            ("contact_weight", 1.5)
+        );
+        let line = "terms.contact_potential=\"none/own.csv\"";
+        let error = options.read_line(line).unwrap_err();
+        assert_eq!(error.file(), Some(Path::new("none/own.csv")));
+        let error = options.read_line("terms.contact_weight=-1").unwrap_err();
+        assert_eq!(error.file(), Some(Path::new("terms.contact_weight=-1")));
+        assert_eq!(error.line(), None);
     }
 
     /// `bfactor` is no file, wherever the file of options lies.

@@ -306,8 +306,7 @@ impl<S: Selection> OptionArguments<S> {
         for config in &self.configs {
             let line = config.to_str().filter(|text| text.contains('='));
             given.extend(match line {
-                // A file that the line names is looked for from the working directory.
-                Some(line) if !config.exists() => options.read_toml(line, config)?,
+                Some(line) if !config.exists() => options.read_line(line)?,
                 _ => options.read_file(config)?,
             });
         }

@@ -19,12 +19,12 @@ use knotdock::threads;
 use serde_json::json;
 
 use crate::arguments::machine::settled;
-use knotdock::output::run_folder::machine;
 use crate::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
 use crate::inputs::native::NativeArguments;
 use crate::inputs::request::{Known, Request};
 use crate::messages::console::{Console, ProgressLine};
 use crate::messages::leftovers::warn_leftovers;
+use knotdock::output::run_folder::machine;
 use knotdock_structures::Error;
 
 /// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,

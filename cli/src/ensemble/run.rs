@@ -15,7 +15,6 @@ use serde_json::Value;
 
 use crate::arguments::options::GivenOptions;
 use crate::docking::{Docking, held_by_another};
-use knotdock::output::run_folder::Clock;
 use crate::ensemble::laid::{Laid, LaidSides};
 use crate::ensemble::place::Place;
 use crate::inputs::bodies::Bodies;
@@ -26,6 +25,7 @@ use crate::messages::brief::time_text;
 use crate::messages::console::Console;
 use crate::messages::leftovers::warn_leftovers;
 use crate::messages::run_summary::summary_line;
+use knotdock::output::run_folder::Clock;
 use knotdock_structures::Error;
 
 /// Conformations of two molecules, each pair of which is docked.
