@@ -66,7 +66,7 @@ impl<T: Real> ScanEngine<T> {
 
 /// A graphics processor that cannot be used.
 pub(super) fn no_graphics(error: impl std::fmt::Display) -> Error {
-    Error::input(format!("--engine gpu: {error}")).help(
+    Error::machine(format!("--engine gpu: {error}")).help(
         "dock with --engine cpu, or see docs/method/engines.md for what a graphics processor needs",
     )
 }

@@ -103,7 +103,7 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
         (["--config", "terms.core_weight=2"], "for molecules"),
         (["--config", "terms.contact_weight=5"], "for molecules"),
         (["--ph", "5"], "for molecules"),
-        (["--resolution", "0"], "above zero"),
+        (["--resolution", "0"], "above 0"),
         (["--alpha", "0"], "above zero"),
         (["--rotations", "0"], "between 1 and 10000000"),
         (["--sampler", "voxels"], "no such sampler"),
