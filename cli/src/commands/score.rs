@@ -211,19 +211,7 @@ fn geometry_text(geometry: &PoseGeometry) -> String {
 
 /// The exact score with its derivatives, and the table of modes.
 fn ladder_text(scored: &PoseScore, unit: &str) -> String {
-    let mut lines = vec![
-        [
-            "modes",
-            "value",
-            "error",
-            "rms",
-            "translation, µs",
-            "new rotation, µs",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-    ];
-    lines.extend(scored.rows.iter().map(|row| {
+    let lines = scored.rows.iter().map(|row| {
         vec![
             row.modes.to_string(),
             format!("{:.3}", row.value),
@@ -232,7 +220,7 @@ fn ladder_text(scored: &PoseScore, unit: &str) -> String {
             format!("{:.1}", 1e6 * row.seconds),
             format!("{:.1}", 1e6 * row.seconds_new_rotation),
         ]
-    }));
+    });
     let vector = |v: [f64; 3]| format!("({:.2}, {:.2}, {:.2})", v[0], v[1], v[2]);
     let sensitivity = match &scored.offset_sensitivity {
         Some(sensitivity) => format!(
@@ -255,7 +243,10 @@ fn ladder_text(scored: &PoseScore, unit: &str) -> String {
         scored.scale,
         vector(scored.gradient.force),
         vector(scored.gradient.torque),
-        report::align(&lines),
+        report::text_table(
+            "modes|value|error|rms|translation, µs|new rotation, µs",
+            lines
+        ),
         scored.modes_total,
         if scored.reached {
             format!(

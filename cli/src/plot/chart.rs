@@ -1,5 +1,6 @@
 //! Curves on logarithmic axes, several panels to a picture, under one legend.
 
+use knotdock_structures::Error;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, ValueFormatter};
 use plotters::element::DashedPathElement;
@@ -22,11 +23,6 @@ const GREY: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 
 /// Red, green and blue.
 pub type Colour = [u8; 3];
-
-/// A chart that plotters did not draw, with its reason.
-#[derive(Debug, thiserror::Error)]
-#[error("the chart cannot be drawn: {0}")]
-pub struct ChartError(String);
 
 type Drawn = DrawingAreaErrorKind<std::io::Error>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
@@ -101,8 +97,8 @@ pub struct Panel {
 /// Draws panels, `columns` of them to a row, and a legend below; the SVG file.
 ///
 /// # Errors
-/// [`ChartError`] where plotters cannot draw it.
-pub fn draw(panels: &[Panel], columns: usize) -> Result<String, ChartError> {
+/// [`Error`] where plotters cannot draw it.
+pub fn draw(panels: &[Panel], columns: usize) -> Result<String, Error> {
     let columns = columns.clamp(1, panels.len().max(1));
     let rows = panels.len().div_ceil(columns);
     let width = columns as u32 * PANEL[0];
@@ -121,7 +117,7 @@ pub fn draw(panels: &[Panel], columns: usize) -> Result<String, ChartError> {
         entries.draw(&below)?;
         root.present()
     };
-    drawing().map_err(|error| ChartError(error.to_string()))?;
+    drawing().map_err(|error| Error::machine(format!("the chart cannot be drawn: {error}")))?;
     Ok(svg)
 }
 

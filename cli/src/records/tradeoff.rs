@@ -6,6 +6,7 @@ use std::io;
 use serde::Serialize;
 use serde_json::{Map, Number, Value};
 
+use crate::tables::field;
 use crate::tradeoff::advice::Advice;
 use crate::tradeoff::{Measured, Refused, Tradeoff};
 use knotdock::options::DockOptions;
@@ -13,7 +14,6 @@ use knotdock::options::definition::name_of;
 use knotdock::output::files::whole_file::to_json;
 use knotdock::output::records::manifest::{Inputs, Machine};
 use knotdock::output::records::program::Program;
-use knotdock::output::tables::fields::number;
 
 /// Number of the layout of `tradeoff.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 2;
@@ -114,19 +114,6 @@ fn stage_times(run: &Measured) -> impl Iterator<Item = (String, Value)> {
             (format!("{name}_cpu_seconds"), optional(cpu)),
         ]
     })
-}
-
-/// A value as a field of the table.
-fn field(value: &Value) -> String {
-    match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        Value::Number(value) => match (value.as_u64(), value.as_f64()) {
-            (None, Some(real)) => number(real),
-            _ => value.to_string(),
-        },
-        other => other.to_string(),
-    }
 }
 
 /// Writes the table to a stream.

@@ -8,27 +8,23 @@
 //! |---|---|
 //! | `contacts` | residues in contact in each pose, and where the best clusters gather |
 //! | `columns` | what the columns of `poses.csv` are called, and how many digits are shown |
-//! | `run`, `run_parts` | the report of a run, and what it is made from |
+//! | `run` | the report of a run, and what it is made from |
 //! | `run_data` | what the scripts of a run's report read |
 //! | `run_words`, `run_cost` | its sections that are words |
-//! | `list`, `lists` | reports that are tables: of batches, ensembles and sweeps |
+//! | `lists` | reports that are tables: of batches, ensembles and sweeps |
 //! | `solids` | reports of collisions and of results of solids |
 //! | `shown` | fields, placements and surfaces, as scripts read them |
-//! | `html` | the page itself: sections, scripts, seal |
-//! | `packed` | bytes as the page holds them |
+//! | `html` | the page itself: sections, packed data, scripts, seal |
 //! | `viewer` | the library of the three-dimensional view, where there is one |
 //! | `page/` | style and scripts |
 
 mod columns;
 mod contacts;
 mod html;
-mod list;
 mod lists;
-mod packed;
 mod run;
 mod run_cost;
 mod run_data;
-mod run_parts;
 mod run_words;
 mod shown;
 mod solids;
@@ -36,9 +32,9 @@ mod viewer;
 
 pub use contacts::RunContacts;
 pub use lists::Listed;
-pub use run_parts::{ReportBodies, RunReport};
+pub use run::{ReportBodies, RunReport};
 pub use solids::SolidsReport;
-pub use viewer::{Viewer, ViewerError};
+pub use viewer::Viewer;
 
 /// Most rows that a report shows, the best ones; the table of the run has all.
 pub const MAX_ROWS: usize = 2000;

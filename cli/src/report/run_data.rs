@@ -18,7 +18,7 @@ use knotdock_structures::molecule::{Format, Molecule, ResidueSelection, fits, wr
 use serde_json::{Value, json};
 
 use crate::report::columns::{ShownColumn, is_term, shown};
-use crate::report::run_parts::{ReportBodies, RunReport};
+use crate::report::run::{ReportBodies, RunReport};
 use crate::report::shown::{placement, rounded, solid};
 use knotdock::interface::{Contact, ResidueName, heavy_residues};
 use knotdock::pose_space::arrangement::Arrangement;

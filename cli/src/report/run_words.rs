@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use crate::report::html::escaped;
+use crate::report::html::{escaped, paragraph};
+use crate::report::run::RunReport;
 use crate::report::run_data::active;
-use crate::report::run_parts::RunReport;
 use crate::tables::report::counted;
 use knotdock::table_text::named_columns::listed;
 
@@ -107,13 +107,7 @@ pub(super) fn summary(report: &RunReport, shown: usize) -> String {
         }
     }
     sentences.push(found(report, shown));
-    let words: String = sentences
-        .iter()
-        .map(|sentence| escaped(sentence) + " ")
-        .collect();
-    let mut html = format!("<p>{}</p>\n", words.trim_end());
-    html += &warnings(record);
-    html
+    paragraph(&sentences) + &warnings(record)
 }
 
 /// What a known complex says of the rows.

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::report::MAX_ROWS;
 use crate::report::columns::of_table;
-use crate::report::html::{Page, escaped, section};
+use crate::report::html::{Page, paragraph, section};
 use crate::report::shown::{LACKING, placement, rows, solid};
 use crate::report::viewer::Viewer;
 use knotdock::output::files::assemblies::Surface;
@@ -56,11 +56,7 @@ impl SolidsReport<'_> {
             "placed": placed.map(|pose| [placement(pose)]).collect::<Vec<_>>(),
             "bodies": self.surfaces.iter().map(solid).collect::<Value>(),
         });
-        let sentences = self
-            .sentences
-            .iter()
-            .map(|sentence| escaped(sentence) + " ");
-        let words = format!("<p>{}</p>\n", sentences.collect::<String>().trim_end());
+        let words = paragraph(&self.sentences);
         let lacking = match viewer {
             Some(_) => "",
             None => LACKING,

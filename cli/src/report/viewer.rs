@@ -2,11 +2,12 @@
 
 use knotdock_structures::Error;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::sync::OnceLock;
 
-use crate::report::packed::packed;
+use crate::report::html::packed;
 use knotdock::bounded_read::read_bounded;
+use knotdock::output::files::file_error;
 
 /// Most bytes of a file of the library.
 const MAX_BYTES: u64 = 4 << 20;
@@ -16,23 +17,6 @@ const MAX_BYTES: u64 = 4 << 20;
 pub struct Viewer {
     pub(super) packed: String,
     pub(super) licence: String,
-}
-
-/// Why a folder does not hold the library.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot read {}: {source}", path.display())]
-pub struct ViewerError {
-    /// The file.
-    pub path: PathBuf,
-    /// The system's message.
-    pub source: io::Error,
-}
-
-impl ViewerError {
-    /// Remedy for the user.
-    pub fn remedy(&self) -> &'static str {
-        "name the folder of npm's package 3dmol: `npm install 3dmol` puts it into node_modules/3dmol"
-    }
 }
 
 impl Viewer {
@@ -52,14 +36,20 @@ impl Viewer {
     /// The library in the folder of npm's package.
     ///
     /// # Errors
-    /// [`ViewerError`] where one of its files cannot be read.
-    pub fn read(package: &Path) -> Result<Self, ViewerError> {
+    /// [`Error`] where one of its files cannot be read.
+    pub fn read(package: &Path) -> Result<Self, Error> {
         let text = |name: &str| {
             let path = package.join(name);
             let bytes = read_bounded(&path, MAX_BYTES).and_then(|bytes| {
                 String::from_utf8(bytes).map_err(|error| io::Error::other(error.utf8_error()))
             });
-            bytes.map_err(|source| ViewerError { path, source })
+            bytes.map_err(|source| {
+                file_error::refused(
+                    &path,
+                    format!("cannot read {}: {source}", path.display()),
+                    "name the folder of npm's package 3dmol: `npm install 3dmol` puts it into node_modules/3dmol",
+                )
+            })
         };
         Ok(Self::of(&text("build/3Dmol-min.js")?, &text("LICENSE")?))
     }
@@ -81,10 +71,4 @@ fn embedded() -> Option<Viewer> {
 #[cfg(not(feature = "viewer"))]
 fn embedded() -> Option<Viewer> {
     None
-}
-
-impl From<ViewerError> for Error {
-    fn from(error: ViewerError) -> Self {
-        Self::input(&error).at(&error.path).help(error.remedy())
-    }
 }

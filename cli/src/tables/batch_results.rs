@@ -5,8 +5,8 @@ use std::path::Path;
 use csv::StringRecord;
 use serde_json::Value;
 
+use crate::tables::field;
 use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
-use knotdock::output::tables::fields::number;
 use knotdock::table_text::cells::{TableWriter, unquoted};
 
 use knotdock::output::tables::poses::PoseTable;
@@ -89,11 +89,7 @@ impl RunSummary {
 
     /// A column of the first row as a field.
     fn best(&self, name: &str) -> String {
-        match &self.best[name] {
-            Value::Null => String::new(),
-            Value::String(text) => text.clone(),
-            value => value.as_f64().map_or_else(|| value.to_string(), number),
-        }
+        field(&self.best[name])
     }
 }
 

@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::tables::complexes::{EvaluatedComplex, write_complexes};
-use crate::tables::report::align;
+use crate::tables::complexes::{EvaluatedComplex, objects, write_complexes};
+use crate::tables::report::text_table;
 use knotdock::evaluate::ChainChoice;
 use knotdock::output::files::whole_file::write_whole;
 use knotdock_scoring::se3::Pose;
@@ -58,8 +58,7 @@ impl Evaluate {
             write_whole(path, |file| write_complexes(&rows, file))?;
         }
         console.say(listing(&rows));
-        let objects: Vec<_> = rows.iter().map(EvaluatedComplex::object).collect();
-        console.result(&json!({ "complexes": objects }))?;
+        console.result(&json!({ "complexes": objects(&rows) }))?;
         Ok(code)
     }
 }
@@ -93,11 +92,7 @@ fn evaluated(
 
 /// Many complexes as a table.
 fn listing(rows: &[EvaluatedComplex]) -> String {
-    let header = [
-        "file", "model", "chains", "native", "irmsd", "lrmsd", "fnat", "dockq", "capri", "matched",
-    ];
-    let mut lines = vec![header.map(str::to_owned).to_vec()];
-    lines.extend(rows.iter().map(|row| {
+    let lines = rows.iter().map(|row| {
         let quality = &row.quality;
         vec![
             row.file.clone(),
@@ -111,6 +106,7 @@ fn listing(rows: &[EvaluatedComplex]) -> String {
             quality.capri.name().to_owned(),
             format!("{:.0}%", 100.0 * row.matched),
         ]
-    }));
-    align(&lines)
+    });
+    let header = "file|model|chains|native|irmsd|lrmsd|fnat|dockq|capri|matched";
+    text_table(header, lines)
 }
