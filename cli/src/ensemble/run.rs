@@ -24,7 +24,6 @@ use crate::inputs::request::Request;
 use crate::messages::brief::time_text;
 use crate::messages::console::Console;
 use crate::messages::leftovers::warn_leftovers;
-use crate::messages::run_summary::summary_line;
 use knotdock_structures::Error;
 
 /// Conformations of two molecules, each pair of which is docked.
@@ -185,7 +184,7 @@ impl Ensemble {
                 "[{number}/{}] {}: {}",
                 members.len(),
                 self.name(member),
-                summary_line(&summary, anew, clock)
+                summary.line(anew.then(|| clock.elapsed().as_secs_f64()))
             ));
             let path = folder.join("poses.csv");
             docked.push(DockedMember {

@@ -7,7 +7,6 @@ pub mod dock;
 pub mod failure;
 pub mod leftovers;
 pub mod listener;
-pub mod run_summary;
 pub mod shown;
 pub mod suggestions;
 pub mod timings;

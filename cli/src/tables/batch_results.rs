@@ -87,6 +87,31 @@ impl RunSummary {
         }
     }
 
+    /// The run in a line of a batch's report; `seconds` on the clock if it was docked in this call.
+    pub fn line(&self, seconds: Option<f64>) -> String {
+        let best = |column: &str, digits: usize| {
+            let value = self.best[column].as_f64();
+            value.map(|value| format!("{value:.digits$}"))
+        };
+        let mut words = format!(
+            "{} clusters, best pose score {}",
+            self.counts[1].unwrap_or(0),
+            best("pose_score", 1).unwrap_or_default()
+        );
+        for (name, column, digits) in [("z-score", "z_score", 1), ("DockQ", "dockq", 2)] {
+            if let Some(value) = best(column, digits) {
+                words += &format!(", {name} {value}");
+            }
+        }
+        if let Some(rank) = self.first_acceptable {
+            words += &format!("; the first acceptable one at rank {rank}");
+        }
+        words
+            + &seconds.map_or("; done before".to_owned(), |seconds| {
+                format!("; {seconds:.1} s")
+            })
+    }
+
     /// A column of the first row as a field.
     fn best(&self, name: &str) -> String {
         field(&self.best[name])
