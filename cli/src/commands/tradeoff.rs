@@ -2,7 +2,7 @@
 
 use std::path::PathBuf;
 
-use crate::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
+use crate::records::tradeoff::{TradeoffParts, record, write_table};
 use crate::report::Listed;
 use crate::tables::report::text_table;
 use crate::tradeoff::advice::advice;
@@ -14,6 +14,7 @@ use knotdock::options::definition::Scope;
 use knotdock::output::files::own_files::TRADEOFF;
 use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::Staging;
+use knotdock::output::files::whole_file::to_json;
 use knotdock::progress::{Ended, Progress};
 use knotdock::threads;
 use serde_json::json;
@@ -111,7 +112,7 @@ impl TradeoffCommand {
         let svg = plot(&tradeoff)?;
         staging.write("tradeoff.svg", |file| file.write_all(svg.as_bytes()))?;
         staging.write("tradeoff.csv", |file| write_table(&tradeoff, file))?;
-        let record = TradeoffRecord::new(TradeoffParts {
+        let record = record(&TradeoffParts {
             inputs: &inputs,
             options: &request.options,
             tradeoff: &tradeoff,
@@ -119,9 +120,8 @@ impl TradeoffCommand {
             matching: known.as_ref().map(Known::entry).transpose()?,
             files: staging.checksums()?,
             machine,
-        })
-        .map_err(Error::machine)?;
-        staging.write("tradeoff.json", |file| record.write_to(file))?;
+        });
+        staging.write("tradeoff.json", |file| to_json(file, &record))?;
         let name = directory.display().to_string();
         let text = Listed::Tradeoff.report(&directory, staging.folder(), &name)?;
         staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
@@ -138,7 +138,7 @@ impl TradeoffCommand {
             "directory": directory.display().to_string(),
             "table": csv,
             "picture": svg,
-            "tradeoff": serde_json::to_value(&record).map_err(Error::machine)?,
+            "tradeoff": record,
         }))?;
         Ok(())
     }

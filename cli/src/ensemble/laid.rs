@@ -1,12 +1,13 @@
 //! Conformations as read: each laid on the first of its side.
 
-use crate::records::ensemble_record::ConformationRecord;
+use crate::records::joined;
 use knotdock::dock::run::molecule_points;
 use knotdock::evaluate::{Superposed, superpose};
 use knotdock::options::DockOptions;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{InputSpec, Molecule};
+use serde_json::{Value, json};
 
 use crate::inputs::bodies::Bodies;
 use crate::inputs::conformations::Conformation;
@@ -42,17 +43,20 @@ impl Laid {
         })
     }
 
-    /// The conformation for ensemble.json.
-    pub fn record(&self) -> ConformationRecord {
+    /// The entry of ensemble.json: the file, the motion to the frame of the first conformation (qw, qx, qy, qz, and tx,
+    /// ty, tz in Å), the backbone RMSD from the first in Å, and the residues shared with it.
+    pub fn record(&self) -> Value {
         let Pose { translation, .. } = self.place.motion;
         let [w, x, y, z] = self.place.motion.quaternion();
-        ConformationRecord {
-            name: self.name.clone(),
-            record: self.record.clone(),
-            to_first: [w, x, y, z, translation.x, translation.y, translation.z],
-            rmsd_from_first: self.place.rmsd,
-            residues_matched: self.place.matched,
-        }
+        joined([
+            json!({ "name": self.name }),
+            json!(self.record),
+            json!({
+                "to_first": [w, x, y, z, translation.x, translation.y, translation.z],
+                "rmsd_from_first": self.place.rmsd,
+                "residues_matched": self.place.matched,
+            }),
+        ])
     }
 
     /// What it is, in a line.
@@ -120,21 +124,17 @@ fn read_pair(specs: [&InputSpec; 2], options: &DockOptions) -> Result<Box<[Input
     }
 }
 
+/// Largest distance in Å of an atom from the mean of all.
 fn radius(molecule: &Molecule) -> f64 {
     let count = molecule.atoms.len().max(1) as f64;
-    let middle: [f64; 3] = std::array::from_fn(|axis| {
-        molecule
-            .atoms
-            .iter()
-            .map(|atom| atom.position[axis])
-            .sum::<f64>()
-            / count
-    });
+    let atoms = || molecule.atoms.iter();
+    let middle: [f64; 3] =
+        std::array::from_fn(|axis| atoms().map(|atom| atom.position[axis]).sum::<f64>() / count);
     let square = |position: [f64; 3]| -> f64 {
-        (0..3)
-            .map(|axis| (position[axis] - middle[axis]).powi(2))
+        let axes = 0..3;
+        axes.map(|axis| (position[axis] - middle[axis]).powi(2))
             .sum()
     };
-    let squares = molecule.atoms.iter().map(|atom| square(atom.position));
+    let squares = atoms().map(|atom| square(atom.position));
     squares.fold(0.0, f64::max).sqrt()
 }

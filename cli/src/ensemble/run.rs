@@ -38,6 +38,17 @@ pub struct Ensemble {
     pub(super) expected_seconds: f64,
 }
 
+/// The members of an ensemble after docking.
+#[derive(Default)]
+pub(super) struct DockedMembers {
+    /// Their tables.
+    pub members: Vec<DockedMember>,
+    /// Poses that they kept.
+    pub poses: u64,
+    /// Members whose runs were there already.
+    pub kept: usize,
+}
+
 /// A member: which conformation of each side.
 #[derive(Clone, Copy)]
 pub(super) struct Member([usize; 2]);
@@ -172,14 +183,14 @@ impl Ensemble {
         let place = Place::open(&self.directory, self.force)?;
         warn_leftovers(place.leftovers(), notices);
         let members = self.members();
-        let (mut docked, mut kept, mut poses) = (Vec::new(), 0, 0);
+        let mut docked = DockedMembers::default();
         for (&member, number) in members.iter().zip(1..) {
             let clock = Instant::now();
             let folder = place.member(&self.name(member));
             let anew = self.dock(member, &folder, (console.silent(), notices))?;
-            kept += usize::from(!anew);
+            docked.kept += usize::from(!anew);
             let summary = RunSummary::of(&folder)?;
-            poses += summary.counts[0].unwrap_or(0);
+            docked.poses += summary.counts[0].unwrap_or(0);
             console.say(format!(
                 "[{number}/{}] {}: {}",
                 members.len(),
@@ -187,7 +198,7 @@ impl Ensemble {
                 summary.line(anew.then(|| clock.elapsed().as_secs_f64()))
             ));
             let path = folder.join("poses.csv");
-            docked.push(DockedMember {
+            docked.members.push(DockedMember {
                 name: self.name(member),
                 conformations: self.laid(member).map(|laid| laid.name.clone()),
                 to_first: self.laid(member).map(|laid| laid.place.motion),
@@ -197,8 +208,13 @@ impl Ensemble {
         }
         let ranking = &self.given.options.ranking;
         let body = RigidBody::new(&self.laid.points);
-        let joint = joint(&docked, &body, ranking.cluster_radius, ranking.no_cluster)?;
-        self.write(&joint, (&docked, poses, kept), place, console)
+        let joint = joint(
+            &docked.members,
+            &body,
+            ranking.cluster_radius,
+            ranking.no_cluster,
+        )?;
+        self.write(&joint, &docked, place, console)
     }
 
     /// Docks a member, unless its run is there; whether it had to be done.

@@ -7,16 +7,18 @@
 //! written. A disk that is full does not stop one either, but the command fails in the end.
 
 use crate::messages::failure;
+use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
+use anstream::{AutoStream, ColorChoice};
+use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use knotdock::progress::{Ended, Progress};
 
-use crate::messages::colour::painted;
 use crate::messages::listener::Listener;
 use crate::messages::shown::{shown, shown_json};
 use knotdock_structures::Error;
@@ -286,5 +288,43 @@ impl Drop for ProgressLine<'_> {
     fn drop(&mut self) {
         self.ticker.take();
         self.bar.finish_and_clear();
+    }
+}
+
+/// First words of messages, with their colours: those of clap's own errors.
+const PAINTED: [(&str, AnsiColor); 2] =
+    [("error:", AnsiColor::Red), ("warning:", AnsiColor::Yellow)];
+
+/// A message for standard error, its first word in colour if the terminal has colours: not in a pipe, with NO_COLOR or
+/// with TERM=dumb.
+fn painted(text: &str) -> Cow<'_, str> {
+    if AutoStream::choice(&io::stderr()) == ColorChoice::Never {
+        return Cow::Borrowed(text);
+    }
+    in_colour(text)
+}
+
+fn in_colour(text: &str) -> Cow<'_, str> {
+    for (word, colour) in PAINTED {
+        if let Some(rest) = text.strip_prefix(word) {
+            let style = Style::new().fg_color(Some(colour.into())).bold();
+            return Cow::Owned(format!("{style}{word}{style:#}{rest}"));
+        }
+    }
+    Cow::Borrowed(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_word_alone_has_a_colour() {
+        let painted = in_colour("error: no warning: at all");
+        assert_eq!(
+            painted,
+            "\u{1b}[1m\u{1b}[31merror:\u{1b}[0m no warning: at all"
+        );
+        assert_eq!(in_colour("no error: here"), "no error: here");
     }
 }

@@ -1,7 +1,6 @@
 //! Text for people, and JSON for programs: results, progress, warnings and errors.
 
 pub mod brief;
-pub mod colour;
 pub mod console;
 pub mod dock;
 pub mod failure;

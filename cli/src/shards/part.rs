@@ -8,9 +8,9 @@ use std::fs::File;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
-use super::members::{Members, copy_range};
+use super::poses_file::{Members, copy_range, header};
 use super::record::BatchRecord;
-use super::{ATTEMPTS, POSES, PosesOfPair, pose_rows};
+use super::{ATTEMPTS, POSES, PosesOfPair};
 use crate::tables::batch_results::{PairResult, RESULTS, head, name_and_status, row};
 use knotdock::output::files::appended::AppendedFile;
 use knotdock::output::files::folder::{next_line, open_own};
@@ -44,26 +44,24 @@ impl Part {
         let [results, poses, attempts] = [RESULTS, POSES, ATTEMPTS].map(|name| folder.join(name));
         let (mut started, mut whole) = (HashMap::new(), 0);
         read_lines(&attempts, |line, (_, end)| {
-            *started
-                .entry(String::from_utf8_lossy(line).into_owned())
-                .or_insert(0) += 1;
+            let name = String::from_utf8_lossy(line).into_owned();
+            *started.entry(name).or_insert(0) += 1;
             whole = end;
             true
         })?;
         let mut part = Self {
             folder: folder.to_owned(),
             results: AppendedFile::open(&results, found.results_end)?,
-            poses: match has_poses {
-                true => Some(AppendedFile::open(&poses, found.poses_end)?),
-                false => None,
-            },
+            poses: has_poses
+                .then(|| AppendedFile::open(&poses, found.poses_end))
+                .transpose()?,
             attempts: AppendedFile::open(&attempts, whole)?,
             pairs: found.pairs,
             started,
             lost: found.lost,
         };
         if let (0, Some(poses)) = (found.poses_end, &mut part.poses) {
-            let header = pose_rows::header().map_err(|error| file_error::writing(folder, error))?;
+            let header = header().map_err(|error| file_error::writing(folder, error))?;
             poses.append(&header)?;
         }
         if found.results_end == 0 {
@@ -125,7 +123,7 @@ impl Part {
         let pairs: Vec<&PairFiles> = names.filter_map(|name| self.pairs.get(name)).collect();
         let folder = &self.folder;
         if let Some(file) = &self.poses {
-            let header = pose_rows::header().map_err(|error| file_error::writing(folder, error))?;
+            let header = header().map_err(|error| file_error::writing(folder, error))?;
             let poses: Vec<Range> = pairs.iter().filter_map(|pair| pair.poses).collect();
             put_in_order(&folder.join(POSES), &header, &poses, file.end())?;
         }
@@ -299,9 +297,11 @@ mod tests {
             .into();
         let record = BatchRecord::new(
             Shard::WHOLE,
-            (2, String::new()),
+            2,
+            String::new(),
             Vec::new(),
-            (Keep::None, None),
+            Keep::None,
+            None,
             own,
         );
         let folder = tempfile::tempdir().unwrap();

@@ -7,11 +7,8 @@
 //! - Sampling, planning and searching are those of `knotdock dock`: nothing is modelled that can be run.
 
 pub mod advice;
-mod agreement;
-mod change;
 pub mod choice;
 pub mod cost_model;
-mod front;
 pub mod measured;
 pub mod plot;
 pub mod settings;

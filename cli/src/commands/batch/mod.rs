@@ -111,9 +111,8 @@ impl Batch {
             .iter()
             .map(|pair| (pair.name.clone(), pair.row.checksum()));
         let names = names.collect();
-        let kept = (self.keep, rows.0);
         let run = BatchRun {
-            record: BatchRecord::new(shard, (total, sha256), self.options, kept, names),
+            record: BatchRecord::new(shard, total, sha256, self.options, self.keep, rows.0, names),
             directory,
             scratch: self.scratch,
             threads: self.threads,
