@@ -119,7 +119,7 @@ impl Inspect {
     }
 }
 
-/// What is found of a molecule.
+/// Findings on a molecule.
 struct Inspection {
     labels: LabelReport,
     unresolved: UnresolvedResidues,
@@ -130,7 +130,7 @@ struct Inspection {
     area: f64,
     /// Volume of the atoms' balls, Å³.
     volume: Volume,
-    /// What each prior finds, in the order of [`PRIORS`].
+    /// The findings of each prior, in the order of [`PRIORS`].
     findings: Vec<Findings>,
 }
 

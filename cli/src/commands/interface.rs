@@ -42,7 +42,7 @@ pub struct InterfaceCommand {
 }
 
 impl InterfaceCommand {
-    /// Describes the complexes; the exit code: 2 where some could not be.
+    /// Describes the complexes; the exit code: 2 if some could not be described.
     pub fn run(self, console: Console) -> Result<u8, Error> {
         let options = self.options.given()?.options;
         threads::on(options.machine.thread_count(), || {

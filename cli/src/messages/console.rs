@@ -40,7 +40,7 @@ pub struct Console<'a> {
 }
 
 impl<'a> Console<'a> {
-    /// The console of what is done within a command and has no words of its own but errors.
+    /// A console that passes on errors alone, for work within a command.
     pub fn silent(self) -> Self {
         Self {
             quiet: true,
@@ -131,21 +131,21 @@ impl<'a> Console<'a> {
         write_line(&mut io::stderr(), &painted(&shown(&failure::text(failure))));
     }
 
-    /// Tells whoever listens that a stage of so many steps begins; the terminal has lines of its own for them.
+    /// Reports to the listener that a stage of `total` steps begins; the terminal shows these steps in other ways.
     pub fn begins(&self, stage: &str, total: usize) {
         if let (Some(listener), false) = (self.listener, self.quiet || total == 0) {
             listener.stage(stage, total as u64);
         }
     }
 
-    /// Tells whoever listens that a step of the stage is done.
+    /// Reports to the listener that a step of the stage is done.
     pub fn advances(&self) {
         if let (Some(listener), false) = (self.listener, self.quiet) {
             listener.advance(1);
         }
     }
 
-    /// Fails where whoever listens ends the command.
+    /// Fails if the listener ends the command.
     pub fn go_on(&self) -> Result<(), Error> {
         let ended = self.listener.map_or(Ok(()), Listener::go_on);
         ended.map_err(|why| Error::lasting(why).help("start it again"))
@@ -182,7 +182,7 @@ fn unwritten(error: &io::Error) -> Result<(), Error> {
     )
 }
 
-/// Writes a line of words; a closed pipe or a full disk behind the stream is not this program's to report.
+/// Writes a line. Failures, such as a closed pipe, are not reported.
 fn write_line(stream: &mut dyn Write, text: &str) {
     let _ = writeln!(stream, "{text}").and_then(|()| stream.flush());
 }
@@ -192,19 +192,19 @@ pub struct ProgressLine<'a> {
     bar: ProgressBar,
     shown: bool,
     ticker: Option<Ticker>,
-    /// Whether a listener hears of it, beside saying whether it goes on.
+    /// Whether the listener receives the steps; it always decides whether the work goes on.
     is_heard: bool,
     listener: Option<&'a dyn Listener>,
 }
 
-/// Time between two drawings of a line whose bar stands still.
+/// Time between two drawings of a line without progress.
 const TICK: Duration = Duration::from_millis(200);
 
-/// A thread that draws the line anew, so that its time goes on where nothing else does.
+/// A thread that redraws the line, so that its clock goes on.
 ///
 /// indicatif has one, too, and panics where the thread cannot be started.
 struct Ticker {
-    /// Ends the thread where it is dropped.
+    /// Ends the thread when it is dropped.
     running: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }

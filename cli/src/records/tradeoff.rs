@@ -106,7 +106,7 @@ fn columns(run: &Measured) -> Map<String, Value> {
 /// # Errors
 /// Those of the stream.
 pub fn write_table(tradeoff: &Tradeoff, stream: &mut dyn io::Write) -> io::Result<()> {
-    // Its cells are this program's own words: `--rotations 96` is to be typed as it stands.
+    // No cell holds text from other sources, so none is quoted: `--rotations 96` can be copied.
     let mut writer = csv::Writer::from_writer(stream);
     for (index, run) in tradeoff.measured.iter().enumerate() {
         let columns = columns(run);

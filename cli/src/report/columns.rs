@@ -1,4 +1,4 @@
-//! What the columns of `poses.csv` are called in a report.
+//! Names and formats of the columns of `poses.csv` in a report.
 
 use csv::StringRecord;
 use knotdock_scoring::terms::effect::Effect;
@@ -12,7 +12,7 @@ pub(super) struct ShownColumn {
     pub name: String,
     /// Its name for people.
     pub label: String,
-    /// What it is, with its unit.
+    /// Its description, with the unit.
     pub help: &'static str,
     /// Decimals that are shown; `None` of text.
     pub digits: Option<usize>,
@@ -75,7 +75,7 @@ pub(super) fn shown(name: &str) -> ShownColumn {
     })
 }
 
-/// The columns of a table of any kind: those of `main` are shown at first. What a column holds is seen from its fields.
+/// The columns of a table of any kind: those of `main` are shown at first. The format of a column follows from its fields.
 pub(super) fn of_table(
     header: &StringRecord,
     records: &[StringRecord],

@@ -27,7 +27,7 @@ const SCRIPTS: [&str; 10] = [
     include_str!("page/main.js"),
 ];
 
-/// What a report may load: what is in it, and nothing else.
+/// Security policy of a report: it loads nothing from outside.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'; \
                       img-src data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'";
 
@@ -37,9 +37,9 @@ pub(super) struct Page<'a> {
     pub title: String,
     /// Sections as HTML.
     pub sections: Vec<String>,
-    /// What the scripts read.
+    /// Data of the scripts.
     pub data: &'a Value,
-    /// The library of the view, where it is shown.
+    /// The library of the view, if it is shown.
     pub viewer: Option<&'a Viewer>,
 }
 

@@ -31,7 +31,7 @@ fn unreadable(path: &Path, fault: impl Display) -> Error {
     )
 }
 
-/// What a directory holds that is no single run.
+/// Kinds of directories that hold several runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Listed {
     /// Pairs of a batch.
@@ -43,7 +43,7 @@ pub enum Listed {
 }
 
 impl Listed {
-    /// What a directory holds, where it is one of these.
+    /// The kind of a directory, if it is one of these.
     pub fn in_directory(directory: &Path) -> Option<Self> {
         if directory.join("run.json").is_file() {
             return None;
@@ -63,7 +63,7 @@ impl Listed {
     /// is called.
     ///
     /// # Errors
-    /// [`Error`] where a file cannot be read.
+    /// [`Error`] if a file cannot be read.
     pub fn report(self, directory: &Path, files: &Path, name: &str) -> Result<String, Error> {
         let report = match self {
             Self::Batch => batch(directory, name)?,
@@ -76,7 +76,7 @@ impl Listed {
 
 type Table = (StringRecord, Vec<StringRecord>);
 
-/// A table as it stands.
+/// A table, read without interpretation.
 fn table(path: &Path) -> Result<Table, Error> {
     let bytes = read_bounded_file(path, MAX_POSES).map_err(|error| unreadable(path, error))?;
     let mut reader = csv::Reader::from_reader(bytes.as_slice());
@@ -103,7 +103,7 @@ fn fields<'a>((header, records): &'a Table, name: &str) -> impl Iterator<Item = 
         .map(move |record| field(record).unwrap_or_default())
 }
 
-/// The page of a row below a directory, where it is there: the name is that of a folder and leads nowhere else.
+/// The page of a row below a directory, if it exists. Names that lead out of the directory have none.
 fn link(directory: &Path, folder: &str, name: &str) -> Option<String> {
     let is_plain = !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\\', ':']);
     let is_there = || directory.join(folder).join(name).join(REPORT).is_file();
@@ -228,11 +228,11 @@ fn tradeoff(files: &Path, name: &str) -> Result<ListReport, Error> {
 /// Most rows that a list shows.
 const MAX_LISTED: usize = 10_000;
 
-/// A table of results and what is said of it.
+/// A table of results, and sentences about it.
 struct ListReport {
     /// Title of the page.
     title: String,
-    /// What is said before the table.
+    /// Sentences before the table.
     sentences: Vec<String>,
     /// Caption of the table.
     caption: &'static str,
@@ -271,7 +271,7 @@ impl ListReport {
         let words = paragraph(&self.sentences);
         let mut sections = vec![section("summary", "Summary", &words)];
         if let Some((svg, what)) = &self.picture {
-            // As an image: whatever stands in the file, none of it runs.
+            // As an image, so that no script in the file runs.
             let image = format!(
                 "<img class=\"picture\" alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">\n",
                 escaped(what),

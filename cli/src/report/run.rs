@@ -13,7 +13,7 @@ use knotdock::options::DockOptions;
 use knotdock::output::files::assemblies::Surface;
 use knotdock::output::tables::poses::PoseTable;
 
-/// What a run put together.
+/// The bodies of a run.
 pub enum ReportBodies<'a> {
     /// Molecules, and their contacts in the poses of the table.
     Molecules([&'a Molecule; 2], &'a RunContacts<'a>),
@@ -29,7 +29,7 @@ pub struct RunReport<'a> {
     pub options: &'a DockOptions,
     /// Its poses.csv.
     pub table: &'a PoseTable,
-    /// What was docked.
+    /// The docked bodies.
     pub bodies: ReportBodies<'a>,
     /// Its directory as commands would name it.
     pub directory: &'a str,
@@ -49,7 +49,7 @@ impl RunReport<'_> {
         }
     }
 
-    /// The page with so many rows.
+    /// The page with `rows` rows.
     fn page(&self, rows: usize, viewer: Option<&Viewer>) -> String {
         let data = run_data::data(self, rows);
         let explorer = include_str!("page/explorer.html");

@@ -1,4 +1,4 @@
-//! What a run cost, its options, and how to repeat it.
+//! The cost of a run, its options, and how to repeat it.
 
 use std::fmt::Write as _;
 
@@ -15,7 +15,7 @@ fn items(list: &Value) -> impl Iterator<Item = &Value> {
     list.as_array().into_iter().flatten()
 }
 
-/// A number with so many decimals; empty if there is none.
+/// A number with `digits` decimals; empty if there is none.
 fn decimals(value: &Value, digits: usize) -> String {
     let value = value.as_f64();
     value.map_or_else(String::new, |value| format!("{value:.digits$}"))

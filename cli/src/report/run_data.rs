@@ -1,13 +1,13 @@
-//! What the scripts of a run's report read, as JSON.
+//! Data of the scripts of a run's report, as JSON.
 //!
 //! | entry | what |
 //! |---|---|
-//! | `sides` | what the two bodies are called |
+//! | `sides` | names of the two bodies |
 //! | `columns`, `rows` | the table: how each column is shown, and its fields |
 //! | `terms` | columns that add up to the pose score |
 //! | `placed` | of each row, what moves each placed body: qw, qx, qy, qz, tx, ty, tz |
 //! | `bodies` | receptor and ligand: text of a structure, or vertices and triangles |
-//! | `contacts` | of each row a text, five numbers a pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
+//! | `contacts` | of each row a text, five numbers per pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
 //! | `shares` | of each side, clusters that touch each residue; `counted` of them were looked at |
 //! | `chains` | names of chains in complexes |
 
@@ -129,7 +129,7 @@ fn molecule(
     })
 }
 
-/// The residue of each atom; of a hydrogen that of the heavy atoms beside it, where there are any.
+/// The residue of each atom; for a hydrogen, that of the heavy atoms of its name, if there are any.
 fn residue_of_atom(molecule: &Molecule) -> Vec<Option<usize>> {
     let mut residues = vec![None; molecule.atoms.len()];
     let mut of_name = HashMap::new();

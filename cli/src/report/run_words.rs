@@ -25,7 +25,7 @@ pub(super) fn title(report: &RunReport) -> String {
     }
 }
 
-/// What was docked and what came of it, where so many rows are shown.
+/// The inputs and the results, if `shown` rows are shown.
 pub(super) fn summary(report: &RunReport, shown: usize) -> String {
     let mut sentences = Vec::new();
     let record = report.record;
@@ -110,7 +110,7 @@ pub(super) fn summary(report: &RunReport, shown: usize) -> String {
     paragraph(&sentences) + &warnings(record)
 }
 
-/// What a known complex says of the rows.
+/// The rows in the light of a known complex.
 fn found(report: &RunReport, shown: usize) -> String {
     let is_good = |row: &usize| {
         let class = report.table.field(*row, "capri");

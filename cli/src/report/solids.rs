@@ -15,9 +15,9 @@ use knotdock::output::files::assemblies::Surface;
 pub struct SolidsReport<'a> {
     /// Title of the page.
     pub title: String,
-    /// What is said of them.
+    /// Sentences on them.
     pub sentences: Vec<String>,
-    /// What the two are called.
+    /// Names of the two.
     pub names: [&'a str; 2],
     /// Their surfaces, each in the frame of its file.
     pub surfaces: [Surface<'a>; 2],
@@ -29,7 +29,7 @@ pub struct SolidsReport<'a> {
     pub records: Vec<StringRecord>,
     /// Columns that are shown at first.
     pub main: &'a [&'a str],
-    /// Where the second solid is in each row.
+    /// Pose of the second solid in each row.
     pub poses: &'a [Pose],
 }
 

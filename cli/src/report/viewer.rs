@@ -36,7 +36,7 @@ impl Viewer {
     /// The library in the folder of npm's package.
     ///
     /// # Errors
-    /// [`Error`] where one of its files cannot be read.
+    /// [`Error`] if one of its files cannot be read.
     pub fn read(package: &Path) -> Result<Self, Error> {
         let text = |name: &str| {
             let path = package.join(name);

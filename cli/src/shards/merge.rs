@@ -28,13 +28,13 @@ pub struct Merged {
     pub counts: [usize; 3],
     /// The table of results.
     pub results: PathBuf,
-    /// The file of poses, where poses are kept.
+    /// The file of poses, if poses are kept.
     pub poses: Option<PathBuf>,
-    /// What ended commands left beside them.
+    /// Files that ended commands left beside them.
     pub leftovers: Vec<PathBuf>,
 }
 
-/// A pair of the batch: its shard, and where its row and its poses are in the shard's files.
+/// A pair of the batch: its shard, and the ranges of its row and its poses in the shard's files.
 struct MergedPair {
     shard: usize,
     is_done: bool,
@@ -242,7 +242,7 @@ fn complete(
     }
 }
 
-/// Which of the numbers from 1 to `last` are not among some that rise, in words; `None` where all are.
+/// The numbers from 1 to `last` that are missing in a rising sequence, as text; `None` if none is missing.
 fn gaps(numbers: impl Iterator<Item = usize>, last: usize) -> Option<String> {
     const SHOWN: usize = 10;
     let mut gaps = Vec::new();

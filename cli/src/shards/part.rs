@@ -1,5 +1,4 @@
-//! The files of a batch or a shard as they grow: what is there is known when they are opened, and what is added is
-//! whole.
+//! The growing files of a batch or a shard: opening them indexes their pairs, and each pair is added whole.
 
 use knotdock::output::files::file_error;
 use knotdock_structures::Error;
@@ -33,8 +32,8 @@ pub struct Part {
 }
 
 impl Part {
-    /// Opens the files in a folder, or makes them. Where they end in the midst of a pair, that pair's part is cut off;
-    /// so is what comes behind a place that is damaged.
+    /// Opens the files in a folder, or makes them. If they end in the middle of a pair, that pair's part is cut off;
+    /// so is everything after a damaged place.
     ///
     /// # Errors
     /// [`Error`] when a file cannot be read or written, or is another's.
@@ -96,7 +95,7 @@ impl Part {
         Ok(())
     }
 
-    /// Adds what came of a pair: its poses, where they are kept and it has some, then its row.
+    /// Adds the result of a pair: its poses, if they are kept and it has some, then its row.
     ///
     /// # Errors
     /// [`Error`]; the pair is not there then, and nothing of it is in the way.
@@ -132,7 +131,7 @@ impl Part {
     }
 }
 
-/// Where something begins and where it ends in a file, in bytes.
+/// Start and end of a part of a file, in bytes.
 pub(super) type Range = (u64, u64);
 
 /// Writes a file anew with some of its parts in another order, if it has them in another.
@@ -152,7 +151,7 @@ fn put_in_order(path: &Path, head: &[u8], parts: &[Range], end: u64) -> Result<(
     sorted.place()
 }
 
-/// What the files of a batch hold of a pair.
+/// A pair in the files of a batch.
 #[derive(Debug)]
 pub(super) struct PairFiles {
     /// Whether it was docked.
@@ -163,7 +162,7 @@ pub(super) struct PairFiles {
     pub poses: Option<Range>,
 }
 
-/// What the files of a part hold.
+/// Index of the files of a part.
 pub(super) struct Index {
     /// Each pair by its name: of several rows or poses the last ones count.
     pub pairs: HashMap<String, PairFiles>,
@@ -176,7 +175,7 @@ impl Index {
     /// Reads the files in a folder, as far as they are whole.
     ///
     /// # Errors
-    /// [`Error`] where they cannot be read, or are no files of a batch.
+    /// [`Error`] if they cannot be read, or are no files of a batch.
     pub fn of(folder: &Path, has_poses: bool) -> Result<Self, Error> {
         let mut poses = HashMap::new();
         let mut poses_end = 0;
@@ -240,7 +239,7 @@ impl Index {
     }
 }
 
-/// Hands on the whole lines of a file and where they are, until `take` wants no more; none where there is no file.
+/// Hands the whole lines of a file and their ranges to `take`, until it returns false; none if there is no file.
 fn read_lines(path: &Path, mut take: impl FnMut(&[u8], Range) -> bool) -> Result<(), Error> {
     if path.symlink_metadata().is_err() {
         return Ok(());

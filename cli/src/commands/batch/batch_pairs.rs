@@ -253,7 +253,7 @@ fn part(file: &str) -> Result<String, Error> {
     Ok(label(&spec.path, spec.chains.as_deref()))
 }
 
-/// What the receptor is docked to, for the pair's name: the ligand, or into which ring.
+/// The partner of the receptor in the pair's name: the ligand, or the symmetry of the ring.
 fn partner(row: &PairRow, of_all: Option<&str>) -> Result<String, Error> {
     let own = row.options.iter().find(|(name, _)| name == "symmetry");
     match own.map(|(_, symmetry)| symmetry.as_str()).or(of_all) {

@@ -32,7 +32,7 @@ pub struct BatchRun {
     pub directory: PathBuf,
     /// Where the growing files are while pairs are docked; their final folder if `None`.
     pub scratch: Option<PathBuf>,
-    /// Which pairs, which options, and what is kept.
+    /// The pairs, their options, and the parts that are kept.
     pub record: BatchRecord,
     /// Threads, if they are given.
     pub threads: Option<usize>,
@@ -174,7 +174,7 @@ impl BatchRun {
     }
 
     /// The pairs that have to be docked: those that were never started, and those that were under way when the process
-    /// ended. What ended the process too often is noted as failed. Whole runs are all looked at.
+    /// ended. Pairs that ended the process too often are noted as failed. With whole runs, every pair is checked.
     fn waiting(&self, pairs: Vec<Pair>, part: &mut Part) -> Result<(Vec<Pair>, Vec<Pair>), Error> {
         let (mut fresh, mut stopped) = (Vec::new(), Vec::new());
         let is_again = |is_done: bool| match self.record.keep {

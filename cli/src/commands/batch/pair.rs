@@ -77,11 +77,11 @@ pub struct PairWork {
     pub directory: PathBuf,
     /// How its line of the report begins.
     pub head: String,
-    /// What is kept of it.
+    /// The parts that are kept of it.
     pub keep: Keep,
     /// Rows of its table that are kept.
     pub rows: usize,
-    /// What it may take.
+    /// Its time and attempts.
     pub limits: Limits,
 }
 
@@ -91,7 +91,7 @@ pub struct DockedPair {
     pub entry: Value,
     /// Its row of the table.
     pub outcome: Result<RunSummary, Error>,
-    /// Its poses, where they are kept in one file with those of others.
+    /// Its poses, if they are kept in one file with those of other pairs.
     pub poses: Option<PosesOfPair>,
 }
 

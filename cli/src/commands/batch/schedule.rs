@@ -1,6 +1,6 @@
 //! Which pairs of a batch are docked at the same time, and on how many threads each.
 //!
-//! A run on T threads takes s + (1 - s) / T of its time on one (Amdahl), where s is its serial share. So many pairs
+//! A run on T threads takes s + (1 - s) / T of its time on one (Amdahl), where s is its serial share. Many pairs
 //! take the least time on one thread each, T at a time. But the last of them would leave threads idle, and one that is
 //! far larger than the others would be waited for. So the largest pairs are docked first, one after another, each on all
 //! threads: as many as make the whole batch shortest.
@@ -14,7 +14,7 @@ use crate::commands::batch::batch_pairs::Pair;
 
 /// Serial share of a run: `knotdock dock` of the example is 1.93 times as fast with -j 2 as with -j 1.
 const SERIAL: f64 = 0.036;
-/// Beyond so many pairs a thread, the last ones are a small part of the whole, and only their sum counts.
+/// Pairs per thread beyond which the last ones are a small part of the whole, and only the sum of all counts.
 const MANY: usize = 64;
 
 /// When and how a pair is docked.

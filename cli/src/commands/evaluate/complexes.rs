@@ -17,7 +17,7 @@ use crate::messages::console::Console;
 use knotdock_structures::Error;
 
 impl Evaluate {
-    /// Evaluates complex files; the exit code: 2 where some could not be.
+    /// Evaluates complex files; the exit code: 2 if some could not be evaluated.
     pub(super) fn complexes(&self, console: Console) -> Result<u8, Error> {
         let (files, chains) = files_and_chains(&self.words, "evaluate")?;
         if self.receptor.is_some() || self.ligand.is_some() {
@@ -63,7 +63,7 @@ impl Evaluate {
     }
 }
 
-/// How near a model of a file is to the known complex, its sides where they stand; and what to know of the match.
+/// The quality of a model of a file, its sides in place, and notes on its match with the known complex.
 fn evaluated(
     file: &str,
     sides: ComplexSides,

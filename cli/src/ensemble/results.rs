@@ -1,4 +1,4 @@
-//! What the runs of an ensemble come to together: the joint table, complexes, the record, and the report.
+//! Joint results of an ensemble: the table, complexes, the record, and the report.
 
 use std::path::Path;
 
@@ -18,7 +18,7 @@ use knotdock::pose_space::arrangement::Arrangement;
 use serde_json::{Value, json};
 
 use crate::docked::write_scripts;
-use crate::ensemble::laid::Laid;
+use crate::ensemble::aligned::AlignedConformation;
 use crate::ensemble::place::Place;
 use crate::ensemble::run::{DockedMembers, Ensemble};
 use crate::inputs::bodies::Bodies;
@@ -71,7 +71,7 @@ impl Ensemble {
             if own.is_empty() {
                 continue;
             }
-            let specs = self.laid(member).map(|laid| laid.spec.clone());
+            let specs = self.conformations(member).map(|laid| laid.spec.clone());
             let bodies = Bodies::of(specs, &self.given.options)?;
             let written = bodies.write(&own, Arrangement::Pair, (folder, None))?;
             let chains = written.chains.unwrap_or_default();
@@ -102,8 +102,12 @@ impl Ensemble {
                 "best_pose_score": best,
             })
         });
-        let [receptor, ligand] = self.laid.sides.each_ref();
-        let conformations = |side: &[Laid]| side.iter().map(Laid::record).collect::<Vec<_>>();
+        let [receptor, ligand] = self.aligned.sides.each_ref();
+        let conformations = |side: &[AlignedConformation]| {
+            side.iter()
+                .map(AlignedConformation::record)
+                .collect::<Vec<_>>()
+        };
         let command = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
         Ok(joined([
             json!({ "schema": SCHEMA }),

@@ -1,4 +1,4 @@
-//! Conformations as read: each laid on the first of its side.
+//! Conformations as read: each aligned with the first of its side.
 
 use crate::records::joined;
 use knotdock::dock::run::molecule_points;
@@ -14,11 +14,11 @@ use crate::inputs::conformations::Conformation;
 use crate::inputs::molecules::Input;
 use knotdock_structures::Error;
 
-/// A conformation that lies on the first of its side.
-pub struct Laid {
+/// A conformation aligned with the first of its side.
+pub struct AlignedConformation {
     /// Its name in tables.
     pub name: String,
-    /// What is read.
+    /// Its file and parts.
     pub spec: InputSpec,
     /// Its file.
     record: InputRecord,
@@ -28,7 +28,7 @@ pub struct Laid {
     pub radius: f64,
 }
 
-impl Laid {
+impl AlignedConformation {
     fn new(conformation: &Conformation, input: &Input, first: &Molecule) -> Result<Self, Error> {
         let place = superpose(&input.molecule, first).map_err(|error| {
             let failure = Error::input(&error).at(&input.record.path);
@@ -59,7 +59,7 @@ impl Laid {
         ])
     }
 
-    /// What it is, in a line.
+    /// Its description in a line.
     pub fn line(&self) -> String {
         let model = self.spec.model;
         format!(
@@ -74,18 +74,18 @@ impl Laid {
 }
 
 /// The conformations of both sides, receptor first, and the points (Å) of the first ligand that make clusters.
-pub struct LaidSides {
+pub struct AlignedSides {
     /// Those of each side, the first first.
-    pub sides: [Vec<Laid>; 2],
+    pub sides: [Vec<AlignedConformation>; 2],
     /// Points of the first ligand.
     pub points: Vec<[f64; 3]>,
 }
 
-impl LaidSides {
-    /// Reads all conformations as they will be read for docking, and lays each on the first of its side.
+impl AlignedSides {
+    /// Reads all conformations as they will be read for docking, and aligns each with the first of its side.
     ///
     /// # Errors
-    /// [`Error`] where one cannot be read or is another molecule.
+    /// [`Error`] if one cannot be read or is another molecule.
     pub fn read(sides: &[Vec<Conformation>; 2], options: &DockOptions) -> Result<Self, Error> {
         let pair = |receptor: &Conformation, ligand: &Conformation| {
             read_pair([&receptor.spec, &ligand.spec], options)
@@ -101,9 +101,9 @@ impl LaidSides {
                 0 => pair(conformation, ligand)?,
                 _ => pair(receptor, conformation)?,
             };
-            Laid::new(conformation, &inputs[side], firsts[side])
+            AlignedConformation::new(conformation, &inputs[side], firsts[side])
         };
-        let of_side = |side: usize| -> Result<Vec<Laid>, Error> {
+        let of_side = |side: usize| -> Result<Vec<AlignedConformation>, Error> {
             let conformations = sides[side].iter();
             conformations.map(|one| laid(side, one)).collect()
         };
