@@ -75,7 +75,8 @@ pub(super) fn shown(name: &str) -> ShownColumn {
     })
 }
 
-/// The columns of a table of any kind: those of `main` are shown at first. The format of a column follows from its fields.
+/// The columns of a table of any kind: those of `main` are shown at first. Its format follows from its
+/// fields.
 pub(super) fn of_table(
     header: &StringRecord,
     records: &[StringRecord],

@@ -220,7 +220,8 @@ fn tradeoff(files: &Path, name: &str) -> Result<ListReport, Error> {
         links: vec![None; table.1.len()],
         header: table.0,
         records: table.1,
-        main: "setting options wall_seconds error_rms agreement first_acceptable acceptable_in_100 front_error front_agreement",
+        main: "setting options wall_seconds error_rms agreement first_acceptable acceptable_in_100 front_error \
+               front_agreement",
         picture: Some((picture, "Error and agreement against time")),
     })
 }

@@ -8,14 +8,14 @@
 //! |---|---|
 //! | `contacts` | residues in contact in each pose, and where the best clusters gather |
 //! | `columns` | what the columns of `poses.csv` are called, and how many digits are shown |
-//! | `run` | the report of a run, and what it is made from |
-//! | `run_data` | what the scripts of a run's report read |
+//! | `run` | the report of a run |
+//! | `run_data` | the parts of a run's report, and the data of its scripts |
 //! | `run_words`, `run_cost` | its sections that are words |
 //! | `lists` | reports that are tables: of batches, ensembles and sweeps |
 //! | `solids` | reports of collisions and of results of solids |
 //! | `shown` | fields, placements and surfaces, as scripts read them |
-//! | `html` | the page itself: sections, packed data, scripts, seal |
-//! | `viewer` | the library of the three-dimensional view, where there is one |
+//! | `html` | the page itself: sections, scripts, seal |
+//! | `viewer` | the library of the three-dimensional view, if there is one; bytes as the page holds them |
 //! | `page/` | style and scripts |
 
 mod columns;
@@ -32,7 +32,7 @@ mod viewer;
 
 pub use contacts::RunContacts;
 pub use lists::Listed;
-pub use run::{ReportBodies, RunReport};
+pub use run_data::{ReportBodies, RunReport};
 pub use solids::SolidsReport;
 pub use viewer::Viewer;
 

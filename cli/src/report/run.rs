@@ -1,39 +1,11 @@
 //! The report of one run.
 
-use knotdock_structures::molecule::Molecule;
-use serde_json::Value;
-
 use crate::report::MAX_ROWS;
-use crate::report::contacts::RunContacts;
 use crate::report::html::{Page, section};
+use crate::report::run_data::{ReportBodies, RunReport};
 use crate::report::shown::LACKING;
 use crate::report::viewer::Viewer;
 use crate::report::{run_cost, run_data, run_words};
-use knotdock::options::DockOptions;
-use knotdock::output::files::assemblies::Surface;
-use knotdock::output::tables::poses::PoseTable;
-
-/// The bodies of a run.
-pub enum ReportBodies<'a> {
-    /// Molecules, and their contacts in the poses of the table.
-    Molecules([&'a Molecule; 2], &'a RunContacts<'a>),
-    /// Meshes, or balls as surfaces.
-    Solids([Surface<'a>; 2]),
-}
-
-/// A finished run, as it is shown.
-pub struct RunReport<'a> {
-    /// Its run.json.
-    pub record: &'a Value,
-    /// The options in it.
-    pub options: &'a DockOptions,
-    /// Its poses.csv.
-    pub table: &'a PoseTable,
-    /// The docked bodies.
-    pub bodies: ReportBodies<'a>,
-    /// Its directory as commands would name it.
-    pub directory: &'a str,
-}
 
 impl RunReport<'_> {
     /// The page, whole: of large molecules with fewer rows, so that it stays below 6 MB. Without a viewer it says

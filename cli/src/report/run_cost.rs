@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::Value;
 
 use crate::report::html::{escaped, table};
-use crate::report::run::RunReport;
+use crate::report::run_data::RunReport;
 use crate::shell_word::shell_word;
 use knotdock::options::definition::Definition;
 use knotdock::options::definitions;

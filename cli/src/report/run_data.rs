@@ -1,4 +1,4 @@
-//! Data of the scripts of a run's report, as JSON.
+//! The parts of a run's report, and the data of its scripts, as JSON.
 //!
 //! | entry | what |
 //! |---|---|
@@ -18,10 +18,35 @@ use knotdock_structures::molecule::{Format, Molecule, ResidueSelection, fits, wr
 use serde_json::{Value, json};
 
 use crate::report::columns::{ShownColumn, is_term, shown};
-use crate::report::run::{ReportBodies, RunReport};
+use crate::report::contacts::RunContacts;
 use crate::report::shown::{placement, rounded, solid};
 use knotdock::interface::{Contact, ResidueName, heavy_residues};
+use knotdock::options::DockOptions;
+use knotdock::output::files::assemblies::Surface;
+use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
+
+/// The bodies of a run.
+pub enum ReportBodies<'a> {
+    /// Molecules, and their contacts in the poses of the table.
+    Molecules([&'a Molecule; 2], &'a RunContacts<'a>),
+    /// Meshes, or balls as surfaces.
+    Solids([Surface<'a>; 2]),
+}
+
+/// A finished run, as it is shown.
+pub struct RunReport<'a> {
+    /// Its run.json.
+    pub record: &'a Value,
+    /// The options in it.
+    pub options: &'a DockOptions,
+    /// Its poses.csv.
+    pub table: &'a PoseTable,
+    /// The docked bodies.
+    pub bodies: ReportBodies<'a>,
+    /// Its directory as commands would name it.
+    pub directory: &'a str,
+}
 
 /// The data, with the first `count` rows.
 pub(super) fn data(report: &RunReport, count: usize) -> Value {

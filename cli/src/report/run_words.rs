@@ -5,7 +5,7 @@ use std::fmt::Write as _;
 use serde_json::Value;
 
 use crate::report::html::{escaped, paragraph};
-use crate::report::run::RunReport;
+use crate::report::run_data::RunReport;
 use crate::report::run_data::active;
 use crate::tables::report::counted;
 use knotdock::table_text::named_columns::listed;
