@@ -369,12 +369,12 @@ fn what_is_wrong_after_the_dashes_is_not_the_table_s_fault() {
     for (words, expected) in [
         ("--frob", "unexpected argument '--frob'"),
         ("--rotations 0", "invalid value '0'"),
-        ("--help", "--help cannot stand after --"),
+        ("--help", "--help cannot come after --"),
         ("--lambda -1", "invalid value '-1' for '--lambda"),
-        ("extra.pdb", "files cannot stand after --"),
+        ("extra.pdb", "files cannot come after --"),
         ("--budget 5s --rotations 5", "cannot be used with"),
-        ("--rerun run.json", "--rerun cannot stand after --"),
-        ("-o elsewhere", "--output cannot stand after --"),
+        ("--rerun run.json", "--rerun cannot come after --"),
+        ("-o elsewhere", "--output cannot come after --"),
     ] {
         let output = batch(
             folder.path(),

@@ -91,7 +91,7 @@ impl Reader {
                     Ok(_) => true,
                     Err(error) => {
                         assert!(!error.to_string().is_empty());
-                        assert_eq!(error.path(), path);
+                        assert_eq!(error.file(), Some(path.as_path()));
                         false
                     }
                 }
@@ -118,7 +118,7 @@ impl Reader {
                     }
                     Err(error) => {
                         assert!(!error.to_string().is_empty());
-                        assert_eq!(error.path(), path);
+                        assert_eq!(error.file(), Some(path.as_path()));
                         let line = error.line();
                         assert!(
                             line.is_none_or(|line| (1..=lines).contains(&line)),

@@ -27,22 +27,28 @@ fn free_memory(root: &Path) -> Option<u64> {
     Some(groups.map_or(available, |free| free.min(available)))
 }
 
-/// A control group's folder, and which names its files have there.
+/// A control group's folder, and the names there of its limit, its usage, and its file cache in `memory.stat`.
 struct ControlGroup {
     folder: PathBuf,
-    limit: &'static str,
-    usage: &'static str,
-    cache: &'static str,
+    names: [&'static str; 3],
 }
+
+const VERSION_1: [&str; 3] = [
+    "memory.limit_in_bytes",
+    "memory.usage_in_bytes",
+    "total_inactive_file",
+];
+const VERSION_2: [&str; 3] = ["memory.max", "memory.current", "inactive_file"];
 
 impl ControlGroup {
     /// Bytes left under the group's limit; its file cache counts as free, since the kernel gives it up first.
     fn free(&self) -> Option<u64> {
         let read = |name| fs::read_to_string(self.folder.join(name)).ok();
-        let limit: u64 = read(self.limit)?.trim().parse().ok()?; // "max" is no limit
-        let usage: u64 = read(self.usage)?.trim().parse().ok()?;
+        let [limit, usage, cache] = self.names;
+        let limit: u64 = read(limit)?.trim().parse().ok()?; // "max" is no limit
+        let usage: u64 = read(usage)?.trim().parse().ok()?;
         let cache = read("memory.stat")
-            .and_then(|stat| keyed(&stat, self.cache))
+            .and_then(|stat| keyed(&stat, cache))
             .unwrap_or(0);
         Some(limit.saturating_sub(usage.saturating_sub(cache)))
     }
@@ -74,20 +80,9 @@ fn control_groups(root: &Path) -> Vec<ControlGroup> {
             .ancestors()
             .take_while(|folder| folder.starts_with(&mount))
         {
-            groups.push(if version_2 {
-                ControlGroup {
-                    folder: folder.to_owned(),
-                    limit: "memory.max",
-                    usage: "memory.current",
-                    cache: "inactive_file",
-                }
-            } else {
-                ControlGroup {
-                    folder: folder.to_owned(),
-                    limit: "memory.limit_in_bytes",
-                    usage: "memory.usage_in_bytes",
-                    cache: "total_inactive_file",
-                }
+            groups.push(ControlGroup {
+                folder: folder.to_owned(),
+                names: if version_2 { VERSION_2 } else { VERSION_1 },
             });
         }
     }

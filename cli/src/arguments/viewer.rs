@@ -2,8 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::report::{Viewer, ViewerError};
+use crate::report::Viewer;
 use clap::Args;
+use knotdock_structures::Error;
 
 /// Where the library is.
 #[derive(Args, Clone, Debug)]
@@ -15,11 +16,11 @@ pub struct ViewerArguments {
 }
 
 impl ViewerArguments {
-    /// The library, where there is one.
+    /// The library, if there is one.
     ///
     /// # Errors
-    /// [`ViewerError`] where the folder does not hold it.
-    pub fn read(&self) -> Result<Option<Viewer>, ViewerError> {
+    /// [`Error`] if the folder does not hold it.
+    pub fn read(&self) -> Result<Option<Viewer>, Error> {
         match &self.viewer {
             Some(folder) => Viewer::read(folder).map(Some),
             None => Ok(Viewer::embedded().cloned()),

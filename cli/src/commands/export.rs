@@ -76,7 +76,7 @@ impl Export {
         let export = Addition::open(&folder, Some(&self.run))?;
         warn_leftovers(&export.leftovers, console);
         if self.format == Some(ExportFormat::Ensemble) {
-            let pairs = exports.iter().map(Placed::pairs);
+            let pairs = exports.iter().map(RunExport::pairs);
             let mut pairs: Vec<PosedPair> = pairs.collect::<Result<Vec<_>, _>>()?.concat();
             pairs.sort_by_key(|pair| self.place(pair.row.rank));
             let name = write_model_file(&pairs, export.stage().folder())?;
@@ -91,7 +91,7 @@ impl Export {
             _ => Format::Mmcif,
         });
         let mut written: Vec<(usize, String, Option<ChainMap>)> = Vec::new();
-        for Placed {
+        for RunExport {
             rows,
             bodies,
             arrangement,
@@ -130,10 +130,10 @@ impl Export {
         self.rank.0.iter().position(|listed| *listed == rank)
     }
 
-    /// What is written: of an ensemble the rows of each member.
-    fn exports(&self, folder: &Path) -> Result<Vec<Placed>, Error> {
+    /// The poses to write; for an ensemble, those of each member.
+    fn exports(&self, folder: &Path) -> Result<Vec<RunExport>, Error> {
         if !is_ensemble(&self.run) {
-            // A record that cannot be read says more of what is wrong than a table that is not there.
+            // The error of an unreadable record helps more than that of a missing table.
             RecordedRun::read(&self.run.join("run.json"))?;
         }
         let table_path = self.run.join("poses.csv");
@@ -175,7 +175,7 @@ impl Export {
                 let read = bodies.records().map(|record| record.path.as_path());
                 check_not_read(&folder.join(name), read)?;
             }
-            Ok(Placed {
+            Ok(RunExport {
                 rows,
                 bodies,
                 arrangement,
@@ -185,7 +185,7 @@ impl Export {
     }
 }
 
-impl Placed {
+impl RunExport {
     /// Each pose with its molecules.
     fn pairs(&self) -> Result<Vec<PosedPair<'_>>, Error> {
         let Pair::Molecules(molecules) = self.bodies.pair() else {
@@ -200,8 +200,8 @@ impl Placed {
     }
 }
 
-/// Poses of a run, and what is placed by them.
-struct Placed {
+/// Poses of a run, and the bodies that they place.
+struct RunExport {
     rows: Vec<PoseRow>,
     bodies: Bodies,
     arrangement: Arrangement,

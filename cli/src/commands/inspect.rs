@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use crate::records::joined;
 use crate::tables::atom_table;
 use crate::tables::report::counted;
 use clap::{ArgGroup, Args};
@@ -118,7 +119,7 @@ impl Inspect {
     }
 }
 
-/// What is found of a molecule.
+/// Findings on a molecule.
 struct Inspection {
     labels: LabelReport,
     unresolved: UnresolvedResidues,
@@ -129,7 +130,7 @@ struct Inspection {
     area: f64,
     /// Volume of the atoms' balls, Å³.
     volume: Volume,
-    /// What each prior finds, in the order of [`PRIORS`].
+    /// The findings of each prior, in the order of [`PRIORS`].
     findings: Vec<Findings>,
 }
 
@@ -159,23 +160,20 @@ impl Inspection {
 
     /// The entries of the result.
     fn entries(self, input: &Input) -> Result<Value, Error> {
-        let mut entries = Map::new();
-        entries.insert("input".to_owned(), json!(input.entry()?));
-        entries.insert("labels".to_owned(), json!(self.labels));
-        for (prior, found) in PRIORS.iter().zip(self.findings) {
-            entries.insert(prior.entry_name().to_owned(), found.entry);
-        }
-        for (name, entry) in [
-            ("unresolved_residues", json!(self.unresolved)),
-            ("terminus_residues", json!(self.termini)),
-            ("pose_terms", Value::Object(counts_entry(&self.counts))),
-            ("accessible_area", json!(self.area)),
-            ("volume", json!(self.volume.value)),
-            ("volume_error", json!(self.volume.error)),
-        ] {
-            entries.insert(name.to_owned(), entry);
-        }
-        Ok(Value::Object(entries))
+        let findings = PRIORS.iter().zip(self.findings);
+        let findings = findings.map(|(prior, found)| (prior.entry_name().to_owned(), found.entry));
+        Ok(joined([
+            json!({ "input": input.entry()?, "labels": self.labels }),
+            Value::Object(findings.collect()),
+            json!({
+                "unresolved_residues": self.unresolved,
+                "terminus_residues": self.termini,
+                "pose_terms": counts_entry(&self.counts),
+                "accessible_area": self.area,
+                "volume": self.volume.value,
+                "volume_error": self.volume.error,
+            }),
+        ]))
     }
 }
 

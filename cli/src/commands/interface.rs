@@ -3,7 +3,7 @@
 use std::path::PathBuf;
 
 use crate::tables::interface::{InterfaceRow, objects, write_pairs, write_rows};
-use crate::tables::report::{align, counted};
+use crate::tables::report::{counted, text_table};
 use clap::Args;
 use knotdock::interface::{Interface, PlacedScore, score_in_place};
 use knotdock::options::DockOptions;
@@ -42,7 +42,7 @@ pub struct InterfaceCommand {
 }
 
 impl InterfaceCommand {
-    /// Describes the complexes; the exit code: 2 where some could not be.
+    /// Describes the complexes; the exit code: 2 if some could not be described.
     pub fn run(self, console: Console) -> Result<u8, Error> {
         let options = self.options.given()?.options;
         threads::on(options.machine.thread_count(), || {
@@ -88,13 +88,12 @@ fn row(file: &str, sides: ComplexSides, options: &DockOptions) -> Result<Interfa
         .at(&sides.path)
         .help("name the chains of both sides, as in `knotdock interface x.pdb H,L A`"));
     }
-    let score: PlacedScore = score_in_place(molecules, options)?;
     Ok(InterfaceRow {
         file: file.to_owned(),
         model: sides.model,
+        score: score_in_place(molecules, options)?,
         chains: sides.chains,
         interface,
-        score,
     })
 }
 
@@ -104,44 +103,19 @@ fn text(row: &InterfaceRow) -> String {
         interface, score, ..
     } = row;
     let [first, second] = &row.chains;
-    let mut lines = vec![
-        [
-            "residue",
-            "residue",
-            "distance",
-            "hydrogen bonds",
-            "salt bridge",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-    ];
-    lines.extend(
-        interface
-            .pairs
-            .iter()
-            .filter(|pair| pair.hydrogen_bonds > 0 || pair.salt_bridge)
-            .map(|pair| {
-                let [a, b] = pair.residues.each_ref().map(|residue| {
-                    format!("{} {}:{}", residue.name, residue.chain, residue.number)
-                });
-                let bonds = pair.hydrogen_bonds;
-                vec![
-                    a,
-                    b,
-                    format!("{:.2}", pair.distance),
-                    if bonds > 0 {
-                        bonds.to_string()
-                    } else {
-                        String::new()
-                    },
-                    if pair.salt_bridge {
-                        "yes".to_owned()
-                    } else {
-                        String::new()
-                    },
-                ]
-            }),
-    );
+    let pairs = interface.pairs.iter();
+    let bonded = pairs.filter(|pair| pair.hydrogen_bonds > 0 || pair.salt_bridge);
+    let bonded = bonded.map(|pair| {
+        let residues = pair.residues.each_ref();
+        let [a, b] = residues.map(|one| format!("{} {}:{}", one.name, one.chain, one.number));
+        let bonds = match pair.hydrogen_bonds {
+            0 => String::new(),
+            bonds => bonds.to_string(),
+        };
+        let bridge = if pair.salt_bridge { "yes" } else { "" };
+        let distance = format!("{:.2}", pair.distance);
+        vec![a, b, distance, bonds, bridge.to_owned()]
+    });
     format!(
         "{}, chains {first} with {second}\n\
          {} of {} and {} residues; {} and {}; {:.0} Å² buried ({:.0} and {:.0}){}\n\
@@ -161,7 +135,10 @@ fn text(row: &InterfaceRow) -> String {
         },
         score.pose_score(),
         terms(score),
-        align(&lines)
+        text_table(
+            "residue|residue|distance|hydrogen bonds|salt bridge",
+            bonded
+        )
     )
 }
 
@@ -185,19 +162,7 @@ fn terms(score: &PlacedScore) -> String {
 
 /// Many complexes as a table.
 fn listing(rows: &[InterfaceRow]) -> String {
-    let header = [
-        "file",
-        "model",
-        "chains",
-        "contacts",
-        "hydrogen bonds",
-        "salt bridges",
-        "buried, Å²",
-        "Sc",
-        "score",
-    ];
-    let mut lines = vec![header.map(str::to_owned).to_vec()];
-    lines.extend(rows.iter().map(|row| {
+    let lines = rows.iter().map(|row| {
         let interface = &row.interface;
         vec![
             row.file.clone(),
@@ -212,6 +177,9 @@ fn listing(rows: &[InterfaceRow]) -> String {
                 .map_or_else(String::new, |value| format!("{value:.2}")),
             format!("{:.1}", row.score.pose_score()),
         ]
-    }));
-    align(&lines)
+    });
+    text_table(
+        "file|model|chains|contacts|hydrogen bonds|salt bridges|buried, Å²|Sc|score",
+        lines,
+    )
 }

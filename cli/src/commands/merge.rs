@@ -49,7 +49,7 @@ impl Merge {
             results,
             poses,
             leftovers,
-        } = merge(&self.directories, &out, (self.partial, self.force))?;
+        } = merge(&self.directories, &out, self.partial, self.force)?;
         warn_leftovers(&leftovers, console);
         let path = |path: PathBuf| path.display().to_string();
         let (results, poses) = (path(results), poses.map(path));

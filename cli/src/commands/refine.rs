@@ -181,7 +181,7 @@ fn molecules(run: &RecordedRun, run_path: &Path) -> Result<Box<[Input; 2]>, Erro
     }
 }
 
-/// Says what was written where, and what it cost in seconds of wall time.
+/// Reports the written files and their cost in seconds of wall time.
 fn report(
     written: &Written,
     known: Option<&Known>,

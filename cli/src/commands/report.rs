@@ -3,10 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::arguments::machine::Threads;
-use crate::records::recorded_run::{RecordedRun, RecordedRunError};
+use crate::records::recorded_run::{RecordedRun, read_record};
 use crate::report::{Listed, RunReport, Viewer};
 use clap::Args;
-use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::is_run;
 use knotdock::output::files::seal::{REPORT, is_sealed};
@@ -95,7 +94,7 @@ fn place(directory: &Path, text: &str, force: bool) -> Result<Vec<PathBuf>, Erro
 fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Error> {
     let name = directory.display().to_string();
     if let Some(listed) = Listed::in_directory(directory) {
-        return Ok(listed.report(directory, directory, &name)?);
+        return listed.report(directory, directory, &name);
     }
     let record_path = directory.join("run.json");
     let run = RecordedRun::read(&record_path)?;
@@ -115,11 +114,5 @@ fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Error> {
 
 /// A record as JSON.
 fn value(path: &Path) -> Result<Value, Error> {
-    let open = |source| RecordedRunError::Open {
-        path: path.to_owned(),
-        source,
-    };
-    let bytes = read_bounded_file(path, MAX_RECORD).map_err(open)?;
-    let value = serde_json::from_slice(&bytes);
-    value.map_err(|error| Error::input(error).at(path))
+    serde_json::from_slice(&read_record(path)?).map_err(|error| Error::input(error).at(path))
 }

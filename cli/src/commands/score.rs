@@ -1,5 +1,6 @@
 //! `knotdock score`: one pose, exactly and from ever more modes.
 
+use crate::records::joined;
 use crate::tables::report;
 use clap::{Args, ValueEnum};
 use knotdock::dock::scene::Scene;
@@ -12,6 +13,7 @@ use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_scoring::transform::truncation::ModeOrder;
+use serde_json::{Value, json};
 
 use crate::arguments::memory;
 use crate::arguments::options::{GivenOptions, OfScore, OptionArguments};
@@ -108,15 +110,12 @@ impl Score {
         let scene = Scene::of_meshes(&sampling.pair, &dock)?;
         let scored = score::score(&scene, pose, &self.ladder(&dock))?;
         console.say(format!("\n{}", ladder_text(&scored, "unit")));
-        let mut object = serde_json::to_value(&scored).map_err(Error::machine)?;
-        if let Some(object) = object.as_object_mut() {
-            object.insert("pose".to_owned(), pose_numbers(pose));
-            let parts = serde_json::to_value(&sampling.pair.parts).map_err(Error::machine)?;
-            object.insert("sampling".to_owned(), parts);
-            object.insert("pose_score".to_owned(), serde_json::json!(scored.exact));
-        }
-        console.result(&object)?;
-        Ok(())
+        let further = json!({
+            "pose": pose_numbers(pose),
+            "sampling": sampling.pair.parts,
+            "pose_score": scored.exact,
+        });
+        console.result(&joined([json!(scored), further]))
     }
 
     /// Scores on the threads of the caller.
@@ -158,22 +157,16 @@ impl Score {
                 "all modes are in and the error is above its mark: the grid is too coarse for the kernel; leave --spacing out",
             );
         }
-        let mut object = serde_json::to_value(&scored).map_err(Error::machine)?;
-        if let Some(object) = object.as_object_mut() {
-            let geometry = serde_json::to_value(geometry).map_err(Error::machine)?;
-            object.insert("geometry".to_owned(), geometry);
-            let site = serde_json::to_value(scene.active_site()).map_err(Error::machine)?;
-            object.insert("active_site".to_owned(), site);
-            let regions = serde_json::to_value(&scene.regions).map_err(Error::machine)?;
-            object.extend(regions.as_object().cloned().unwrap_or_default());
-            object.insert("pose".to_owned(), pose_numbers(pose));
-            for (term, value) in pose_terms.iter() {
-                object.insert(term.id.to_owned(), serde_json::json!(value));
-            }
-            object.insert("pose_score".to_owned(), serde_json::json!(pose_score));
-        }
-        console.result(&object)?;
-        Ok(())
+        let terms = pose_terms.iter();
+        let terms = terms.map(|(term, value)| (term.id.to_owned(), json!(value)));
+        console.result(&joined([
+            json!(scored),
+            json!({ "geometry": geometry, "active_site": scene.active_site() }),
+            json!(scene.regions),
+            json!({ "pose": pose_numbers(pose) }),
+            Value::Object(terms.collect()),
+            json!({ "pose_score": pose_score }),
+        ]))
     }
 }
 
@@ -187,10 +180,10 @@ fn pose_terms_text(values: &TermValues) -> Option<String> {
 }
 
 /// The seven numbers of a pose.
-fn pose_numbers(pose: &Pose) -> serde_json::Value {
+fn pose_numbers(pose: &Pose) -> Value {
     let [qw, qx, qy, qz] = pose.quaternion();
     let [tx, ty, tz]: [f64; 3] = pose.translation.into();
-    serde_json::json!([qw, qx, qy, qz, tx, ty, tz])
+    json!([qw, qx, qy, qz, tx, ty, tz])
 }
 
 /// The pose as two solids: buried surface and shared volume.
@@ -211,19 +204,7 @@ fn geometry_text(geometry: &PoseGeometry) -> String {
 
 /// The exact score with its derivatives, and the table of modes.
 fn ladder_text(scored: &PoseScore, unit: &str) -> String {
-    let mut lines = vec![
-        [
-            "modes",
-            "value",
-            "error",
-            "rms",
-            "translation, µs",
-            "new rotation, µs",
-        ]
-        .map(str::to_owned)
-        .to_vec(),
-    ];
-    lines.extend(scored.rows.iter().map(|row| {
+    let lines = scored.rows.iter().map(|row| {
         vec![
             row.modes.to_string(),
             format!("{:.3}", row.value),
@@ -232,7 +213,7 @@ fn ladder_text(scored: &PoseScore, unit: &str) -> String {
             format!("{:.1}", 1e6 * row.seconds),
             format!("{:.1}", 1e6 * row.seconds_new_rotation),
         ]
-    }));
+    });
     let vector = |v: [f64; 3]| format!("({:.2}, {:.2}, {:.2})", v[0], v[1], v[2]);
     let sensitivity = match &scored.offset_sensitivity {
         Some(sensitivity) => format!(
@@ -255,7 +236,10 @@ fn ladder_text(scored: &PoseScore, unit: &str) -> String {
         scored.scale,
         vector(scored.gradient.force),
         vector(scored.gradient.torque),
-        report::align(&lines),
+        report::text_table(
+            "modes|value|error|rms|translation, µs|new rotation, µs",
+            lines
+        ),
         scored.modes_total,
         if scored.reached {
             format!(

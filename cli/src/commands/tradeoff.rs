@@ -2,9 +2,9 @@
 
 use std::path::PathBuf;
 
-use crate::records::tradeoff::{TradeoffParts, TradeoffRecord, write_table};
+use crate::records::tradeoff::{TradeoffParts, record, write_table};
 use crate::report::Listed;
-use crate::tables::report::align;
+use crate::tables::report::text_table;
 use crate::tradeoff::advice::advice;
 use crate::tradeoff::plot::plot;
 use crate::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
@@ -14,6 +14,7 @@ use knotdock::options::definition::Scope;
 use knotdock::output::files::own_files::TRADEOFF;
 use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::Staging;
+use knotdock::output::files::whole_file::to_json;
 use knotdock::progress::{Ended, Progress};
 use knotdock::threads;
 use serde_json::json;
@@ -109,10 +110,10 @@ impl TradeoffCommand {
         drop(progress);
 
         let advice = advice(&tradeoff);
-        let svg = plot(&tradeoff).map_err(Error::machine)?;
+        let svg = plot(&tradeoff)?;
         staging.write("tradeoff.svg", |file| file.write_all(svg.as_bytes()))?;
         staging.write("tradeoff.csv", |file| write_table(&tradeoff, file))?;
-        let record = TradeoffRecord::new(TradeoffParts {
+        let record = record(&TradeoffParts {
             inputs: &inputs,
             options: &request.options,
             tradeoff: &tradeoff,
@@ -120,9 +121,8 @@ impl TradeoffCommand {
             matching: known.as_ref().map(Known::entry).transpose()?,
             files: staging.checksums()?,
             machine,
-        })
-        .map_err(Error::machine)?;
-        staging.write("tradeoff.json", |file| record.write_to(file))?;
+        });
+        staging.write("tradeoff.json", |file| to_json(file, &record))?;
         let name = directory.display().to_string();
         let text = Listed::Tradeoff.report(&directory, staging.folder(), &name)?;
         staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
@@ -139,7 +139,7 @@ impl TradeoffCommand {
             "directory": directory.display().to_string(),
             "table": csv,
             "picture": svg,
-            "tradeoff": serde_json::to_value(&record).map_err(Error::machine)?,
+            "tradeoff": record,
         }))?;
         Ok(())
     }
@@ -166,25 +166,15 @@ fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Error> {
 
 /// Settings by time, with what most want to know of them.
 fn table(tradeoff: &Tradeoff) -> String {
-    let mut header = vec![
-        "setting",
-        "wall s",
-        "CPU s",
-        "rank",
-        "error rms",
-        "worst",
-        "score apart",
-        "agreement",
-        "front",
-    ];
-    if tradeoff.with_native {
-        header.extend(["acceptable", "near-native"]);
-    }
+    let header = "setting|wall s|CPU s|rank|error rms|worst|score apart|agreement|front";
+    let of_native = match tradeoff.with_native {
+        true => "|acceptable|near-native",
+        false => "",
+    };
     let mut order: Vec<&Measured> = tradeoff.measured.iter().collect();
     order.sort_by(|a, b| a.cost().total_cmp(&b.cost()));
     let rank = |rank: Option<usize>| rank.map_or_else(|| "-".to_owned(), |rank| rank.to_string());
-    let mut lines = vec![header.into_iter().map(str::to_owned).collect()];
-    for run in order {
+    let lines = order.into_iter().map(|run| {
         let front = match (run.front_error, run.front_agreement) {
             (true, true) => "both",
             (true, false) => "error",
@@ -209,9 +199,9 @@ fn table(tradeoff: &Tradeoff) -> String {
                 rank(native.first_near_native),
             ]);
         }
-        lines.push(line);
-    }
-    align(&lines)
+        line
+    });
+    text_table(&format!("{header}{of_native}"), lines)
 }
 
 /// Lines on how far the sweep is, and the bar of the search that runs.

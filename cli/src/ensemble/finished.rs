@@ -20,7 +20,7 @@ pub struct RunRows {
 /// which the rows name them.
 ///
 /// # Errors
-/// [`Error`] where a row of an ensemble names no member.
+/// [`Error`] if a row of an ensemble names no member.
 pub fn runs(directory: &Path, table: &PoseTable, rows: &[usize]) -> Result<Vec<RunRows>, Error> {
     if !is_ensemble(directory) {
         let run = directory.join("run.json");
@@ -53,7 +53,7 @@ pub fn runs(directory: &Path, table: &PoseTable, rows: &[usize]) -> Result<Vec<R
     Ok(found.into_iter().map(|(_, member)| member).collect())
 }
 
-/// Whether a name may be that of a member. Whatever stands in a table, it leads into no other folder.
+/// Whether a name may be that of a member. No name in a table leads into another folder.
 fn is_member(name: &str) -> bool {
     let is_plain = |c: char| c.is_ascii_alphanumeric() || "._".contains(c);
     name.starts_with('r') && name.chars().all(is_plain)

@@ -1,9 +1,9 @@
 //! `knotdock dock` of several conformations: each pair of them a run, and one ranking.
 
+mod aligned;
 pub mod finished;
-mod laid;
 mod place;
+mod results;
 mod run;
-mod written;
 
 pub use run::Ensemble;

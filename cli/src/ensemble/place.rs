@@ -30,10 +30,10 @@ pub(super) enum Place {
 }
 
 impl Place {
-    /// The place of an ensemble in a directory: beside it where it holds another run and `force` is true.
+    /// The place of an ensemble in a directory: beside it if it holds another run and `force` is true.
     ///
     /// # Errors
-    /// [`Error`] where the directory holds anything but an ensemble that was begun.
+    /// [`Error`] if the directory holds anything but an ensemble that was begun.
     pub fn open(directory: &Path, force: bool) -> Result<Self, Error> {
         let is_begun = match std::fs::read_dir(directory) {
             Ok(entries) => entries.flatten().all(|entry| {
@@ -50,7 +50,7 @@ impl Place {
         Ok(Self::Replacing(Box::new(staging)))
     }
 
-    /// What ended commands left there.
+    /// Files that ended commands left there.
     pub fn leftovers(&self) -> &[PathBuf] {
         match self {
             Self::New(_, addition) => &addition.leftovers,
@@ -67,7 +67,7 @@ impl Place {
         folder.join(MEMBERS).join(name)
     }
 
-    /// What the joint files are written to.
+    /// The stage of the joint files.
     pub fn stage(&self) -> &Stage {
         match self {
             Self::New(_, addition) => addition.stage(),
@@ -78,7 +78,7 @@ impl Place {
     /// Puts the joint files into their place.
     ///
     /// # Errors
-    /// [`Error`] where they cannot be.
+    /// [`Error`] if they cannot be placed.
     pub fn commit(self) -> Result<(), Error> {
         match self {
             Self::New(_, addition) => addition.place(false)?,

@@ -15,7 +15,7 @@ use serde_json::Value;
 
 use crate::arguments::options::GivenOptions;
 use crate::docking::{Docking, held_by_another};
-use crate::ensemble::laid::{Laid, LaidSides};
+use crate::ensemble::aligned::{AlignedConformation, AlignedSides};
 use crate::ensemble::place::Place;
 use crate::inputs::bodies::Bodies;
 use crate::inputs::conformations::Conformation;
@@ -24,13 +24,12 @@ use crate::inputs::request::Request;
 use crate::messages::brief::time_text;
 use crate::messages::console::Console;
 use crate::messages::leftovers::warn_leftovers;
-use crate::messages::run_summary::summary_line;
 use knotdock::output::run_folder::Clock;
 use knotdock_structures::Error;
 
 /// Conformations of two molecules, each pair of which is docked.
 pub struct Ensemble {
-    pub(super) laid: LaidSides,
+    pub(super) aligned: AlignedSides,
     pub(super) given: GivenOptions,
     native: Option<NativeFiles>,
     wanted: Wanted,
@@ -40,15 +39,26 @@ pub struct Ensemble {
     pub(super) expected_seconds: f64,
 }
 
+/// The members of an ensemble after docking.
+#[derive(Default)]
+pub(super) struct DockedMembers {
+    /// Their tables.
+    pub members: Vec<DockedMember>,
+    /// Poses that they kept.
+    pub poses: u64,
+    /// Members whose runs were there already.
+    pub kept: usize,
+}
+
 /// A member: which conformation of each side.
 #[derive(Clone, Copy)]
 pub(super) struct Member([usize; 2]);
 
 impl Ensemble {
-    /// Reads all conformations, plans the largest pair and says what all will cost.
+    /// Reads all conformations, plans the largest pair and reports the expected cost.
     ///
     /// # Errors
-    /// [`Error`] where a conformation cannot be used, and where memory does not suffice for the largest pair.
+    /// [`Error`] if a conformation cannot be used, or if memory does not suffice for the largest pair.
     pub fn prepare(
         sides: &[Vec<Conformation>; 2],
         (given, native, wanted): (GivenOptions, Option<NativeFiles>, Wanted),
@@ -62,9 +72,9 @@ impl Ensemble {
                     .help("dock each conformation in a run of its own"),
             );
         }
-        let laid = LaidSides::read(sides, &given.options)?;
+        let aligned = AlignedSides::read(sides, &given.options)?;
         let mut ensemble = Self {
-            laid,
+            aligned,
             given,
             native,
             wanted,
@@ -73,8 +83,8 @@ impl Ensemble {
             clock,
             expected_seconds: 0.0,
         };
-        for (side, laid) in ["Receptor", "Ligand"].iter().zip(&ensemble.laid.sides) {
-            let lines: Vec<String> = laid.iter().map(Laid::line).collect();
+        for (side, laid) in ["Receptor", "Ligand"].iter().zip(&ensemble.aligned.sides) {
+            let lines: Vec<String> = laid.iter().map(AlignedConformation::line).collect();
             console.say(format!(
                 "{side}, {}:\n{}",
                 counted(laid.len(), "conformation"),
@@ -87,19 +97,19 @@ impl Ensemble {
 
     /// The members in the order of docking: of each conformation of the receptor all of the ligand.
     pub(super) fn members(&self) -> Vec<Member> {
-        let [receptors, ligands] = self.laid.sides.each_ref().map(Vec::len);
+        let [receptors, ligands] = self.aligned.sides.each_ref().map(Vec::len);
         let of_receptor = |receptor| (0..ligands).map(move |ligand| Member([receptor, ligand]));
         (0..receptors).flat_map(of_receptor).collect()
     }
 
-    pub(super) fn laid(&self, Member(places): Member) -> [&Laid; 2] {
-        let [receptors, ligands] = &self.laid.sides;
+    pub(super) fn conformations(&self, Member(places): Member) -> [&AlignedConformation; 2] {
+        let [receptors, ligands] = &self.aligned.sides;
         [&receptors[places[0]], &ligands[places[1]]]
     }
 
     /// Its name, and that of the folder of its run.
     fn name(&self, member: Member) -> String {
-        let [receptor, ligand] = self.laid(member);
+        let [receptor, ligand] = self.conformations(member);
         format!("r{}_l{}", receptor.name, ligand.name)
     }
 
@@ -111,7 +121,7 @@ impl Ensemble {
 
     /// Plans a member's run into a folder.
     fn docking(&self, member: Member, folder: PathBuf, console: Console) -> Result<Docking, Error> {
-        let specs = self.laid(member).map(|laid| laid.spec.clone());
+        let specs = self.conformations(member).map(|laid| laid.spec.clone());
         let bodies = Bodies::of(specs, &self.given.options)?;
         let request = Request::of(bodies, self.native.clone(), self.given.clone());
         let place = (folder, self.force);
@@ -120,10 +130,10 @@ impl Ensemble {
         Ok(docking)
     }
 
-    /// Plans the first member and says what is done, then the largest; the seconds that all are expected to take.
+    /// Plans and describes the first member, then plans the largest; the seconds that all are expected to take.
     fn foresee(&self, console: Console) -> Result<f64, Error> {
         let first = self.planned(Member([0, 0]), console)?;
-        let largest = Member(self.laid.sides.each_ref().map(|side| largest(side)));
+        let largest = Member(self.aligned.sides.each_ref().map(|side| largest(side)));
         let bytes = match largest.0 {
             [0, 0] => first.memory_bytes(),
             _ => first
@@ -133,7 +143,7 @@ impl Ensemble {
         let count = self.members().len();
         let each = first.expected_seconds();
         let seconds = each * count as f64;
-        let [receptors, ligands] = self.laid.sides.each_ref().map(Vec::len);
+        let [receptors, ligands] = self.aligned.sides.each_ref().map(Vec::len);
         console.say(format!(
             "\n{}: {} of the receptor with {ligands} of the ligand, one after another; expected are {} in all, {} \
              each, and at most {:.0} MB",
@@ -169,38 +179,43 @@ impl Ensemble {
             && self.members().into_iter().all(is_done)
     }
 
-    /// Docks the members that are not there yet, and writes what they come to; the JSON object of that.
+    /// Docks the missing members, and writes the joint results; their JSON object.
     pub fn run(self, console: Console, notices: Console) -> Result<Value, Error> {
         let place = Place::open(&self.directory, self.force)?;
         warn_leftovers(place.leftovers(), notices);
         let members = self.members();
-        let (mut docked, mut kept, mut poses) = (Vec::new(), 0, 0);
+        let mut docked = DockedMembers::default();
         for (&member, number) in members.iter().zip(1..) {
             let clock = Instant::now();
             let folder = place.member(&self.name(member));
             let anew = self.dock(member, &folder, (console.silent(), notices))?;
-            kept += usize::from(!anew);
+            docked.kept += usize::from(!anew);
             let summary = RunSummary::of(&folder)?;
-            poses += summary.counts[0].unwrap_or(0);
+            docked.poses += summary.counts[0].unwrap_or(0);
             console.say(format!(
                 "[{number}/{}] {}: {}",
                 members.len(),
                 self.name(member),
-                summary_line(&summary, anew, clock)
+                summary.line(anew.then(|| clock.elapsed().as_secs_f64()))
             ));
             let path = folder.join("poses.csv");
-            docked.push(DockedMember {
+            docked.members.push(DockedMember {
                 name: self.name(member),
-                conformations: self.laid(member).map(|laid| laid.name.clone()),
-                to_first: self.laid(member).map(|laid| laid.place.motion),
+                conformations: self.conformations(member).map(|laid| laid.name.clone()),
+                to_first: self.conformations(member).map(|laid| laid.place.motion),
                 table: PoseTable::read(&path)?,
                 path,
             });
         }
         let ranking = &self.given.options.ranking;
-        let body = RigidBody::new(&self.laid.points);
-        let joint = joint(&docked, &body, ranking.cluster_radius, ranking.no_cluster)?;
-        self.write(&joint, (&docked, poses, kept), place, console)
+        let body = RigidBody::new(&self.aligned.points);
+        let joint = joint(
+            &docked.members,
+            &body,
+            ranking.cluster_radius,
+            ranking.no_cluster,
+        )?;
+        self.write(&joint, &docked, place, console)
     }
 
     /// Docks a member, unless its run is there; whether it had to be done.
@@ -232,7 +247,7 @@ fn recorded_members(path: &Path) -> Option<Vec<String>> {
 }
 
 /// The conformation that reaches furthest.
-fn largest(side: &[Laid]) -> usize {
+fn largest(side: &[AlignedConformation]) -> usize {
     let places = 0..side.len();
     let by_radius =
         |&a: &usize, &b: &usize| side[a].radius.total_cmp(&side[b].radius).then(b.cmp(&a));

@@ -1,5 +1,5 @@
-//! What `knotdock dock` says without `--verbose`: what is scored and why, what is expected, what it cost, and what to do
-//! next.
+//! Messages of `knotdock dock` without `--verbose`: the score and its reasons, the expected cost, the cost, and next
+//! steps.
 
 use std::path::Path;
 
@@ -70,7 +70,7 @@ fn unknown_text(labels: &LabelReport) -> Option<String> {
 const LARGEST_ANGLE: usize = 30;
 
 /// How many rotations are searched, and the time and memory that the search is expected to take; of the CPU in
-/// `seconds`, where they are known.
+/// `seconds`, if they are known.
 ///
 /// A number of rotations that may be meant as an angle is answered with that angle's, unless it `is_angle`.
 pub fn expected_text(
@@ -139,8 +139,7 @@ pub fn time_text(seconds: f64) -> String {
     }
 }
 
-/// What a finished run of so many seconds cost, how far the fast path was from the exact score, and what else decided
-/// the ranking.
+/// The cost of a finished run of `seconds`, the error of the fast path, and what else decided the ranking.
 pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String {
     let costs = || outcome.effects.iter().filter(|cost| cost.on);
     let rotation = costs().map(|cost| cost.milliseconds_per_rotation).sum();

@@ -7,16 +7,18 @@
 //! written. A disk that is full does not stop one either, but the command fails in the end.
 
 use crate::messages::failure;
+use std::borrow::Cow;
 use std::io::{self, IsTerminal, Write};
 use std::sync::OnceLock;
 use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
 use std::thread::{Builder, JoinHandle};
 use std::time::Duration;
 
+use anstream::{AutoStream, ColorChoice};
+use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use knotdock::progress::{Ended, Progress};
 
-use crate::messages::colour::painted;
 use crate::messages::listener::Listener;
 use crate::messages::shown::{shown, shown_json};
 use knotdock_structures::Error;
@@ -38,7 +40,7 @@ pub struct Console<'a> {
 }
 
 impl<'a> Console<'a> {
-    /// The console of what is done within a command and has no words of its own but errors.
+    /// A console that passes on errors alone, for work within a command.
     pub fn silent(self) -> Self {
         Self {
             quiet: true,
@@ -129,21 +131,21 @@ impl<'a> Console<'a> {
         write_line(&mut io::stderr(), &painted(&shown(&failure::text(failure))));
     }
 
-    /// Tells whoever listens that a stage of so many steps begins; the terminal has lines of its own for them.
+    /// Reports to the listener that a stage of `total` steps begins; the terminal shows these steps in other ways.
     pub fn begins(&self, stage: &str, total: usize) {
         if let (Some(listener), false) = (self.listener, self.quiet || total == 0) {
             listener.stage(stage, total as u64);
         }
     }
 
-    /// Tells whoever listens that a step of the stage is done.
+    /// Reports to the listener that a step of the stage is done.
     pub fn advances(&self) {
         if let (Some(listener), false) = (self.listener, self.quiet) {
             listener.advance(1);
         }
     }
 
-    /// Fails where whoever listens ends the command.
+    /// Fails if the listener ends the command.
     pub fn go_on(&self) -> Result<(), Error> {
         let ended = self.listener.map_or(Ok(()), Listener::go_on);
         ended.map_err(|why| Error::lasting(why).help("start it again"))
@@ -180,7 +182,7 @@ fn unwritten(error: &io::Error) -> Result<(), Error> {
     )
 }
 
-/// Writes a line of words; a closed pipe or a full disk behind the stream is not this program's to report.
+/// Writes a line. Failures, such as a closed pipe, are not reported.
 fn write_line(stream: &mut dyn Write, text: &str) {
     let _ = writeln!(stream, "{text}").and_then(|()| stream.flush());
 }
@@ -190,19 +192,19 @@ pub struct ProgressLine<'a> {
     bar: ProgressBar,
     shown: bool,
     ticker: Option<Ticker>,
-    /// Whether a listener hears of it, beside saying whether it goes on.
+    /// Whether the listener receives the steps; it always decides whether the work goes on.
     is_heard: bool,
     listener: Option<&'a dyn Listener>,
 }
 
-/// Time between two drawings of a line whose bar stands still.
+/// Time between two drawings of a line without progress.
 const TICK: Duration = Duration::from_millis(200);
 
-/// A thread that draws the line anew, so that its time goes on where nothing else does.
+/// A thread that redraws the line, so that its clock goes on.
 ///
 /// indicatif has one, too, and panics where the thread cannot be started.
 struct Ticker {
-    /// Ends the thread where it is dropped.
+    /// Ends the thread when it is dropped.
     running: Option<Sender<()>>,
     thread: Option<JoinHandle<()>>,
 }
@@ -286,5 +288,43 @@ impl Drop for ProgressLine<'_> {
     fn drop(&mut self) {
         self.ticker.take();
         self.bar.finish_and_clear();
+    }
+}
+
+/// First words of messages, with their colours: those of clap's own errors.
+const PAINTED: [(&str, AnsiColor); 2] =
+    [("error:", AnsiColor::Red), ("warning:", AnsiColor::Yellow)];
+
+/// A message for standard error, its first word in colour if the terminal has colours: not in a pipe, with NO_COLOR or
+/// with TERM=dumb.
+fn painted(text: &str) -> Cow<'_, str> {
+    if AutoStream::choice(&io::stderr()) == ColorChoice::Never {
+        return Cow::Borrowed(text);
+    }
+    in_colour(text)
+}
+
+fn in_colour(text: &str) -> Cow<'_, str> {
+    for (word, colour) in PAINTED {
+        if let Some(rest) = text.strip_prefix(word) {
+            let style = Style::new().fg_color(Some(colour.into())).bold();
+            return Cow::Owned(format!("{style}{word}{style:#}{rest}"));
+        }
+    }
+    Cow::Borrowed(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_first_word_alone_has_a_colour() {
+        let painted = in_colour("error: no warning: at all");
+        assert_eq!(
+            painted,
+            "\u{1b}[1m\u{1b}[31merror:\u{1b}[0m no warning: at all"
+        );
+        assert_eq!(in_colour("no error: here"), "no error: here");
     }
 }

@@ -1,4 +1,4 @@
-//! Reports of `knotdock dock`: effects, errors, and what was assumed of the inputs.
+//! Reports of `knotdock dock`: effects, errors, and assumptions on the inputs.
 
 use std::collections::BTreeMap;
 
@@ -113,7 +113,7 @@ fn rescored_text(outcome: &DockOutcome) -> Option<String> {
     ))
 }
 
-/// What the sharp stage saw, and its time.
+/// The finding of the sharp stage, and its time.
 fn sharp_text(outcome: &DockOutcome) -> Option<String> {
     let sharp = outcome.sharp.as_ref()?;
     let stage = outcome.timing.iter().find(|stage| stage.name == "sharp")?;
@@ -228,7 +228,7 @@ fn joined(names: &[&str]) -> String {
     }
 }
 
-/// What the user knows of the complex: restraints, predictions and a membrane.
+/// Given knowledge of the complex: restraints, predictions and a membrane.
 pub fn known_text(sides: &[&str], known: &Restrained) -> Vec<String> {
     let mut lines = Vec::new();
     if !known.is_empty() {
@@ -329,7 +329,7 @@ pub fn metal_bound(labels: &LabelReport) -> String {
     }
 }
 
-/// Charges and contact types assumed of one side, where effects use them.
+/// Charges and contact types assumed of one side, if effects use them.
 pub fn assumed(side: &str, labels: &LabelReport, plan: &DockPlan) -> Option<String> {
     let names = |unknown: &BTreeMap<String, usize>| {
         let names = unknown

@@ -1,4 +1,4 @@
-//! What commands that were ended left beside what is written now, and what is said of it.
+//! Warnings of files that ended commands left.
 
 use std::path::PathBuf;
 

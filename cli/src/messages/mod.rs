@@ -1,13 +1,11 @@
 //! Text for people, and JSON for programs: results, progress, warnings and errors.
 
 pub mod brief;
-pub mod colour;
 pub mod console;
 pub mod dock;
 pub mod failure;
 pub mod leftovers;
 pub mod listener;
-pub mod run_summary;
 pub mod shown;
 pub mod suggestions;
 pub mod timings;

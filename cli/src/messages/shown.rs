@@ -1,7 +1,7 @@
 //! Text as a terminal may show it: control characters escaped.
 //!
 //! The names and excerpts in messages come from files that may be anyone's. Written as they stand, an escape sequence
-//! among them could clear the screen, retitle the window or hide what stands before it.
+//! among them could clear the screen, retitle the window or hide the text before it.
 
 use std::borrow::Cow;
 

@@ -4,7 +4,7 @@ use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
 use knotdock::options::option_named;
 
-/// What to do about a word that is not UTF-8.
+/// Remedy for a word that is not UTF-8.
 pub const UTF_8: &str = "rename the file, or link to it by a name in UTF-8";
 
 /// How to set an option that only files of options have, by a word such as `--contact-weight=4`.
@@ -19,7 +19,7 @@ fn instead_of_option(word: &str) -> Option<String> {
     ))
 }
 
-/// What to give `knotdock dock` beside one file: a ring of copies needs no other.
+/// Remedy for `knotdock dock` with one file: a second one, or a ring of copies.
 fn instead_of_ligand(error: &clap::Error) -> Option<String> {
     let Some(ContextValue::Strings(missing)) = error.get(ContextKind::InvalidArg) else {
         return None;

@@ -1,4 +1,4 @@
-//! Logarithmic axes: their range, where numbers stand, and how these read.
+//! Logarithmic axes: their range, their ticks, and the text of these.
 
 /// Share of an axis that a dot takes to either side, and a little more.
 const DOT: f64 = 0.03;
@@ -58,7 +58,7 @@ impl Scale {
             .collect()
     }
 
-    /// Powers of two within the axis, as exponents: every one, or every second or third where they would stand too
+    /// Powers of two within the axis, as exponents: every one, or every second or third if they would be too
     /// close.
     pub fn powers_of_two(self) -> Vec<i32> {
         let doubling = 2f64.log10();

@@ -1,5 +1,6 @@
 //! Curves on logarithmic axes, several panels to a picture, under one legend.
 
+use knotdock_structures::Error;
 use plotters::coord::Shift;
 use plotters::coord::ranged1d::{KeyPointHint, NoDefaultFormatting, ValueFormatter};
 use plotters::element::DashedPathElement;
@@ -15,7 +16,7 @@ const PANEL: [u32; 2] = [526, 440];
 const TEXT: f64 = 16.0;
 /// Room in pixels at the left of a legend.
 const INDENT: i32 = 76;
-/// Length in pixels of the stroke that stands for a curve in the legend.
+/// Length in pixels of a curve's stroke in the legend.
 const SAMPLE: i32 = 28;
 const BLACK: RGBColor = RGBColor(0x22, 0x22, 0x22);
 const GREY: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
@@ -23,18 +24,13 @@ const GREY: RGBColor = RGBColor(0xdd, 0xdd, 0xdd);
 /// Red, green and blue.
 pub type Colour = [u8; 3];
 
-/// A chart that plotters did not draw, with its reason.
-#[derive(Debug, thiserror::Error)]
-#[error("the chart cannot be drawn: {0}")]
-pub struct ChartError(String);
-
 type Drawn = DrawingAreaErrorKind<std::io::Error>;
 type Area<'a> = DrawingArea<SVGBackend<'a>, Shift>;
 
-/// What numbers stand along an axis.
+/// Numbers along an axis.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Ticks {
-    /// Powers of ten, with twos and fives where there is room.
+    /// Powers of ten, with twos and fives if there is room.
     Ten,
     /// Powers of two, written as such.
     Two,
@@ -43,7 +39,7 @@ pub enum Ticks {
 /// An axis.
 #[derive(Clone, Debug)]
 pub struct Axis {
-    /// What it shows, with its unit.
+    /// Its quantity, with the unit.
     pub label: String,
     /// Its numbers.
     pub ticks: Ticks,
@@ -73,7 +69,7 @@ pub enum Style {
 /// A curve, or points.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Its name in the legend, where curves of one name in several panels stand once; empty for none.
+    /// Its name in the legend, once for curves of one name in several panels; empty for none.
     pub name: String,
     /// Its colour.
     pub colour: Colour,
@@ -88,7 +84,7 @@ pub struct Series {
 /// A pair of axes with curves.
 #[derive(Clone, Debug)]
 pub struct Panel {
-    /// What stands above it.
+    /// Its title.
     pub title: String,
     /// The axis below.
     pub across: Axis,
@@ -101,8 +97,8 @@ pub struct Panel {
 /// Draws panels, `columns` of them to a row, and a legend below; the SVG file.
 ///
 /// # Errors
-/// [`ChartError`] where plotters cannot draw it.
-pub fn draw(panels: &[Panel], columns: usize) -> Result<String, ChartError> {
+/// [`Error`] where plotters cannot draw it.
+pub fn draw(panels: &[Panel], columns: usize) -> Result<String, Error> {
     let columns = columns.clamp(1, panels.len().max(1));
     let rows = panels.len().div_ceil(columns);
     let width = columns as u32 * PANEL[0];
@@ -121,7 +117,7 @@ pub fn draw(panels: &[Panel], columns: usize) -> Result<String, ChartError> {
         entries.draw(&below)?;
         root.present()
     };
-    drawing().map_err(|error| ChartError(error.to_string()))?;
+    drawing().map_err(|error| Error::machine(format!("the chart cannot be drawn: {error}")))?;
     Ok(svg)
 }
 

@@ -36,7 +36,7 @@ impl Svg {
         put!(self, "</g>");
     }
 
-    /// A line of text whose middle stands on `[x, y]`.
+    /// A line of text whose middle is at `[x, y]`.
     pub fn text(&mut self, [x, y]: [f64; 2], text: &str) {
         let escaped = text.replace('&', "&amp;").replace('<', "&lt;");
         put!(

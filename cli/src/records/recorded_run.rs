@@ -1,17 +1,30 @@
 //! The part of a `run.json` that later commands read.
 
 use knotdock_structures::Error;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use serde::Deserialize;
 
 use crate::records::ensemble_record::{RECORD, is_ensemble};
 use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
 use knotdock::options::{DockOptions, MachineOptions};
+use knotdock::output::files::file_error;
 use knotdock::output::records::input_record::{InputRecord, NativeRecord};
 use knotdock::output::records::manifest::SCHEMA;
 use knotdock::output::records::program::{COMMIT, VERSION};
+
+const REMEDY: &str = "give a run that `knotdock dock` of this version wrote";
+
+/// The bytes of a `run.json`.
+///
+/// # Errors
+/// [`Error`] when the file cannot be read.
+pub fn read_record(path: &Path) -> Result<Vec<u8>, Error> {
+    read_bounded_file(path, MAX_RECORD).map_err(|source| {
+        let message = format!("cannot read {}: {source}", path.display());
+        file_error::refused(path, message, REMEDY)
+    })
+}
 
 /// The part of a `run.json` that later commands read.
 #[derive(Debug)]
@@ -32,70 +45,12 @@ pub struct RecordedRun {
     pub options: DockOptions,
 }
 
-/// Why a `run.json` cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum RecordedRunError {
-    /// The file cannot be opened.
-    #[error("cannot read {}: {source}", path.display())]
-    Open {
-        /// The file.
-        path: PathBuf,
-        /// The system's message.
-        source: io::Error,
-    },
-    /// The directory is that of an ensemble, each member of which has a record of its own.
-    #[error("{} is an ensemble: each of its members is a run", directory.display())]
-    Ensemble {
-        /// The directory.
-        directory: PathBuf,
-    },
-    /// The file is no manifest that this version understands.
-    #[error("{} is not a run.json that this version can read: {message}", path.display())]
-    Content {
-        /// The file.
-        path: PathBuf,
-        /// 1-based line, where known.
-        line: Option<u64>,
-        /// The fault, in words.
-        message: String,
-    },
-}
-
-impl RecordedRunError {
-    /// The file in question.
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::Open { path, .. } | Self::Content { path, .. } => path,
-            Self::Ensemble { directory } => directory,
-        }
-    }
-
-    /// The 1-based line in question, where there is one.
-    pub fn line(&self) -> Option<u64> {
-        match self {
-            Self::Open { .. } | Self::Ensemble { .. } => None,
-            Self::Content { line, .. } => *line,
-        }
-    }
-
-    /// Remedy for the user.
-    pub fn remedy(&self) -> &'static str {
-        match self {
-            Self::Ensemble { .. } => {
-                "name the run of a member, a folder in members/; column `member` of poses.csv says which, and \
-                 `member_rank` the rank there"
-            }
-            _ => "give a run that `knotdock dock` of this version wrote",
-        }
-    }
-}
-
 impl RecordedRun {
-    /// Reads a `run.json`: a file, no pipe, for its inputs are looked for beside it.
+    /// Reads a `run.json`: a file, no pipe, because its inputs are looked for beside it.
     ///
     /// # Errors
-    /// [`RecordedRunError`].
-    pub fn read(path: &Path) -> Result<Self, RecordedRunError> {
+    /// [`Error`] when the file cannot be read, is no record of this schema, or belongs to an ensemble.
+    pub fn read(path: &Path) -> Result<Self, Error> {
         #[derive(Deserialize)]
         struct Header {
             schema: u32,
@@ -118,37 +73,40 @@ impl RecordedRun {
         let directory = path.parent().unwrap_or(Path::new(""));
         let names_record = path.file_name().is_some_and(|name| name == RECORD);
         if names_record || (!path.exists() && is_ensemble(directory)) {
-            let directory = directory.to_owned();
-            return Err(RecordedRunError::Ensemble { directory });
+            return Err(file_error::refused(
+                directory,
+                format!(
+                    "{} is an ensemble: each of its members is a run",
+                    directory.display()
+                ),
+                "name the run of a member, a folder in members/; column `member` of poses.csv says which, and \
+                 `member_rank` the rank there",
+            ));
         }
-        let text =
-            read_bounded_file(path, MAX_RECORD).map_err(|source| RecordedRunError::Open {
-                path: path.to_owned(),
-                source,
-            })?;
-        let content = |line, message| RecordedRunError::Content {
-            path: path.to_owned(),
-            line,
-            message,
+        let text = read_record(path)?;
+        let refused = |fault: String| {
+            let message = format!(
+                "{} is not a run.json that this version can read: {fault}",
+                path.display()
+            );
+            file_error::refused(path, message, REMEDY)
         };
-        let wrong = |error: serde_json::Error| {
+        let malformed = |error: serde_json::Error| {
             let line = u64::try_from(error.line()).ok().filter(|&line| line > 0);
-            content(line, error.to_string())
+            refused(error.to_string()).on_line(line)
         };
-        // What else a record of another schema holds may be anything.
-        let header: Header = serde_json::from_slice(&text).map_err(wrong)?;
+        // A record of another schema may hold anything else.
+        let header: Header = serde_json::from_slice(&text).map_err(malformed)?;
         if header.program != "knotdock" {
-            let message = format!("it was written by {}", header.program);
-            return Err(content(None, message));
+            return Err(refused(format!("it was written by {}", header.program)));
         }
         if header.schema != SCHEMA {
-            let message = format!(
+            return Err(refused(format!(
                 "its schema is {}, this version's is {SCHEMA}",
                 header.schema
-            );
-            return Err(content(None, message));
+            )));
         }
-        let file: File = serde_json::from_slice(&text).map_err(wrong)?;
+        let file: File = serde_json::from_slice(&text).map_err(malformed)?;
         Ok(Self {
             version: file.version,
             commit: file.commit,
@@ -186,14 +144,5 @@ impl RecordedRun {
             && natives
             && self.options
                 == options.changed(|options| options.machine = MachineOptions::default())
-    }
-}
-
-impl From<RecordedRunError> for Error {
-    fn from(error: RecordedRunError) -> Self {
-        Self::input(&error)
-            .at(error.path())
-            .on_line(error.line())
-            .help(error.remedy())
     }
 }

@@ -4,8 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use crate::report::packed::packed;
-use crate::report::viewer::Viewer;
+use crate::report::viewer::{Viewer, packed};
 use knotdock::output::files::seal::{BEGINNING, sealed};
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 
@@ -23,7 +22,7 @@ const SCRIPTS: [&str; 10] = [
     include_str!("page/main.js"),
 ];
 
-/// What a report may load: what is in it, and nothing else.
+/// Security policy of a report: it loads nothing from outside.
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'; \
                       img-src data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'";
 
@@ -33,9 +32,9 @@ pub(super) struct Page<'a> {
     pub title: String,
     /// Sections as HTML.
     pub sections: Vec<String>,
-    /// What the scripts read.
+    /// Data of the scripts.
     pub data: &'a Value,
-    /// The library of the view, where it is shown.
+    /// The library of the view, if it is shown.
     pub viewer: Option<&'a Viewer>,
 }
 
@@ -107,24 +106,27 @@ pub(super) fn section(id: &str, heading: &str, inner: &str) -> String {
     )
 }
 
-/// A table of text, whose first line names the columns.
-pub(super) fn table(caption: &str, lines: &[Vec<String>]) -> String {
+/// Sentences as a paragraph.
+pub(super) fn paragraph(sentences: &[String]) -> String {
+    format!("<p>{}</p>\n", escaped(&sentences.join(" ")))
+}
+
+/// A table of text: a `header` of names with `|` between them, and rows of fields.
+pub(super) fn table(
+    caption: &str,
+    header: &str,
+    rows: impl IntoIterator<Item = Vec<String>>,
+) -> String {
+    let head = header.split('|');
+    let head = head.map(|name| format!("<th scope=\"col\">{}</th>", escaped(name)));
     let mut text = format!(
-        "<div class=\"scroll\"><table>\n<caption>{}</caption>\n",
-        escaped(caption)
+        "<div class=\"scroll\"><table>\n<caption>{}</caption>\n<tr>{}</tr>\n",
+        escaped(caption),
+        head.collect::<String>()
     );
-    for (number, line) in lines.iter().enumerate() {
-        let tag = if number == 0 {
-            "th scope=\"col\""
-        } else {
-            "td"
-        };
-        let close = if number == 0 { "th" } else { "td" };
-        let cells: String = line
-            .iter()
-            .map(|cell| format!("<{tag}>{}</{close}>", escaped(cell)))
-            .collect();
-        let _ = writeln!(text, "<tr>{cells}</tr>");
+    for row in rows {
+        let cells = row.iter().map(|cell| format!("<td>{}</td>", escaped(cell)));
+        let _ = writeln!(text, "<tr>{}</tr>", cells.collect::<String>());
     }
     text + "</table></div>\n"
 }
@@ -139,8 +141,7 @@ mod tests {
             escaped("<img src=x onerror='a'> & \"b\""),
             "&lt;img src=x onerror=&#39;a&#39;&gt; &amp; &quot;b&quot;"
         );
-        let lines = [vec!["<b>".to_owned()], vec!["</td>".to_owned()]];
-        let text = table("<i>", &lines);
+        let text = table("<i>", "<b>", [vec!["</td>".to_owned()]]);
         assert!(!text.contains("<b>") && !text.contains("<i>"));
     }
 }

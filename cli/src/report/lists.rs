@@ -1,46 +1,37 @@
-//! Reports of batches, ensembles and sweeps, from the files of their directories.
+//! Reports of batches, ensembles and sweeps, from the files of their directories: a table of results, each perhaps with
+//! its own page.
 
 use knotdock_structures::Error;
+use std::fmt::Display;
 use std::fs;
-use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use csv::StringRecord;
-use serde_json::Value;
+use serde_json::{Value, json};
 
 use crate::records::ensemble_record::{MEMBERS, RECORD};
-use crate::report::list::ListReport;
+use crate::report::columns::of_table;
+use crate::report::html::{Page, escaped, paragraph, section};
+use crate::report::shown::rows;
 use crate::tables::batch_results::RESULTS;
 use crate::tables::report::counted;
 use knotdock::bounded_read::{MAX_POSES, MAX_RECORD, read_bounded_file};
+use knotdock::output::files::file_error;
 use knotdock::output::files::seal::REPORT;
 use knotdock::table_text::cells::unquoted_row;
 
-/// Why the files of a directory make no report.
-#[derive(Debug, thiserror::Error)]
-#[error("cannot read {}: {source}", path.display())]
-pub struct ListError {
-    /// The file.
-    pub path: PathBuf,
-    /// What is wrong with it.
-    pub source: io::Error,
+/// A file of a directory that cannot be read, with its fault.
+fn unreadable(path: &Path, fault: impl Display) -> Error {
+    file_error::refused(
+        path,
+        format!("cannot read {}: {fault}", path.display()),
+        "name a directory that `knotdock dock`, `batch` or `tradeoff` wrote, with its files as they were",
+    )
 }
 
-impl ListError {
-    /// Remedy for the user.
-    pub fn remedy(&self) -> &'static str {
-        "name a directory that `knotdock dock`, `batch` or `tradeoff` wrote, with its files as they were"
-    }
-
-    fn at(path: &Path, source: impl Into<io::Error>) -> Self {
-        Self {
-            path: path.to_owned(),
-            source: source.into(),
-        }
-    }
-}
-
-/// What a directory holds that is no single run.
+/// Kinds of directories that hold several runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Listed {
     /// Pairs of a batch.
@@ -52,7 +43,7 @@ pub enum Listed {
 }
 
 impl Listed {
-    /// What a directory holds, where it is one of these.
+    /// The kind of a directory, if it is one of these.
     pub fn in_directory(directory: &Path) -> Option<Self> {
         if directory.join("run.json").is_file() {
             return None;
@@ -72,8 +63,8 @@ impl Listed {
     /// is called.
     ///
     /// # Errors
-    /// [`ListError`] where a file cannot be read.
-    pub fn report(self, directory: &Path, files: &Path, name: &str) -> Result<String, ListError> {
+    /// [`Error`] if a file cannot be read.
+    pub fn report(self, directory: &Path, files: &Path, name: &str) -> Result<String, Error> {
         let report = match self {
             Self::Batch => batch(directory, name)?,
             Self::Ensemble => ensemble(directory, files, name)?,
@@ -85,9 +76,9 @@ impl Listed {
 
 type Table = (StringRecord, Vec<StringRecord>);
 
-/// A table as it stands.
-fn table(path: &Path) -> Result<Table, ListError> {
-    let bytes = read_bounded_file(path, MAX_POSES).map_err(|error| ListError::at(path, error))?;
+/// A table, read without interpretation.
+fn table(path: &Path) -> Result<Table, Error> {
+    let bytes = read_bounded_file(path, MAX_POSES).map_err(|error| unreadable(path, error))?;
     let mut reader = csv::Reader::from_reader(bytes.as_slice());
     let read = reader.headers().map(unquoted_row).and_then(|header| {
         let rows = reader
@@ -95,12 +86,12 @@ fn table(path: &Path) -> Result<Table, ListError> {
             .map(|row| row.map(|row| unquoted_row(&row)));
         Ok((header, rows.collect::<Result<Vec<_>, _>>()?))
     });
-    read.map_err(|error| ListError::at(path, error))
+    read.map_err(|error| unreadable(path, error))
 }
 
-fn record(path: &Path) -> Result<Value, ListError> {
-    let bytes = read_bounded_file(path, MAX_RECORD).map_err(|error| ListError::at(path, error))?;
-    serde_json::from_slice(&bytes).map_err(|error| ListError::at(path, error))
+fn record(path: &Path) -> Result<Value, Error> {
+    let bytes = read_bounded_file(path, MAX_RECORD).map_err(|error| unreadable(path, error))?;
+    serde_json::from_slice(&bytes).map_err(|error| unreadable(path, error))
 }
 
 /// The fields of a column, empty where there is none.
@@ -112,7 +103,7 @@ fn fields<'a>((header, records): &'a Table, name: &str) -> impl Iterator<Item = 
         .map(move |record| field(record).unwrap_or_default())
 }
 
-/// The page of a row below a directory, where it is there: the name is that of a folder and leads nowhere else.
+/// The page of a row below a directory, if it exists. Names that lead out of the directory have none.
 fn link(directory: &Path, folder: &str, name: &str) -> Option<String> {
     let is_plain = !name.is_empty() && !name.starts_with('.') && !name.contains(['/', '\\', ':']);
     let is_there = || directory.join(folder).join(name).join(REPORT).is_file();
@@ -131,7 +122,7 @@ fn link(directory: &Path, folder: &str, name: &str) -> Option<String> {
     })
 }
 
-fn batch(directory: &Path, name: &str) -> Result<ListReport, ListError> {
+fn batch(directory: &Path, name: &str) -> Result<ListReport, Error> {
     let table = table(&directory.join(RESULTS))?;
     let count = |status: &str| {
         fields(&table, "status")
@@ -170,24 +161,13 @@ fn batch(directory: &Path, name: &str) -> Result<ListReport, ListError> {
         caption: "Pairs, each with the best row of its run. A name leads to the report of the pair.",
         header: table.0,
         records: table.1,
-        main: &[
-            "name",
-            "status",
-            "error",
-            "clusters",
-            "score",
-            "z_score",
-            "irmsd",
-            "dockq",
-            "capri",
-            "first_acceptable_rank",
-        ],
+        main: "name status error clusters score z_score irmsd dockq capri first_acceptable_rank",
         links,
         picture: None,
     })
 }
 
-fn ensemble(directory: &Path, files: &Path, name: &str) -> Result<ListReport, ListError> {
+fn ensemble(directory: &Path, files: &Path, name: &str) -> Result<ListReport, Error> {
     let record = record(&files.join(RECORD))?;
     let table = table(&files.join("poses.csv"))?;
     let size = |side: &str| record[side].as_array().map_or(0, Vec::len);
@@ -217,30 +197,17 @@ fn ensemble(directory: &Path, files: &Path, name: &str) -> Result<ListReport, Li
         caption: "Ranked poses of all members",
         header: table.0,
         records: table.1,
-        main: &[
-            "rank",
-            "score",
-            "cluster_size",
-            "member",
-            "member_rank",
-            "receptor_model",
-            "ligand_model",
-            "z_score",
-            "irmsd",
-            "lrmsd",
-            "dockq",
-            "capri",
-        ],
+        main: "rank score cluster_size member member_rank receptor_model ligand_model z_score irmsd lrmsd dockq capri",
         links,
         picture: None,
     })
 }
 
-fn tradeoff(files: &Path, name: &str) -> Result<ListReport, ListError> {
+fn tradeoff(files: &Path, name: &str) -> Result<ListReport, Error> {
     let record = record(&files.join("tradeoff.json"))?;
     let table = table(&files.join("tradeoff.csv"))?;
     let path = files.join("tradeoff.svg");
-    let picture = fs::read(&path).map_err(|error| ListError::at(&path, error))?;
+    let picture = fs::read(&path).map_err(|error| unreadable(&path, error))?;
     let mut sentences = vec![format!(
         "{} were measured.",
         counted(table.1.len(), "setting")
@@ -253,23 +220,77 @@ fn tradeoff(files: &Path, name: &str) -> Result<ListReport, ListError> {
         links: vec![None; table.1.len()],
         header: table.0,
         records: table.1,
-        main: &[
-            "setting",
-            "options",
-            "wall_seconds",
-            "error_rms",
-            "agreement",
-            "first_acceptable",
-            "acceptable_in_100",
-            "front_error",
-            "front_agreement",
-        ],
+        main: "setting options wall_seconds error_rms agreement first_acceptable acceptable_in_100 front_error \
+               front_agreement",
         picture: Some((picture, "Error and agreement against time")),
     })
 }
 
-impl From<ListError> for Error {
-    fn from(error: ListError) -> Self {
-        Self::input(&error).at(&error.path).help(error.remedy())
+/// Most rows that a list shows.
+const MAX_LISTED: usize = 10_000;
+
+/// A table of results, and sentences about it.
+struct ListReport {
+    /// Title of the page.
+    title: String,
+    /// Sentences before the table.
+    sentences: Vec<String>,
+    /// Caption of the table.
+    caption: &'static str,
+    /// Names of its columns.
+    header: StringRecord,
+    /// Its rows.
+    records: Vec<StringRecord>,
+    /// Columns that are shown at first, with blanks between them.
+    main: &'static str,
+    /// The page of each row, from the directory of the report.
+    links: Vec<Option<String>>,
+    /// A picture as SVG, and what it shows.
+    picture: Option<(Vec<u8>, &'static str)>,
+}
+
+impl ListReport {
+    /// The page, whole.
+    fn text(mut self) -> String {
+        let all = self.records.len();
+        if all > MAX_LISTED {
+            self.sentences.push(format!(
+                "The table shows the first {MAX_LISTED} of {all} rows."
+            ));
+            self.records.truncate(MAX_LISTED);
+        }
+        let main: Vec<&str> = self.main.split_whitespace().collect();
+        let columns = of_table(&self.header, &self.records, &main);
+        let rows = rows(&columns, &self.records);
+        let data = json!({
+            "kind": "list",
+            "caption": self.caption,
+            "columns": columns,
+            "rows": rows,
+            "links": self.links,
+        });
+        let words = paragraph(&self.sentences);
+        let mut sections = vec![section("summary", "Summary", &words)];
+        if let Some((svg, what)) = &self.picture {
+            // As an image, so that no script in the file runs.
+            let image = format!(
+                "<img class=\"picture\" alt=\"{}\" src=\"data:image/svg+xml;base64,{}\">\n",
+                escaped(what),
+                STANDARD.encode(svg)
+            );
+            sections.push(section("picture", what, &image));
+        }
+        sections.push(section(
+            "results",
+            "Results",
+            include_str!("page/list.html"),
+        ));
+        Page {
+            title: self.title,
+            sections,
+            data: &data,
+            viewer: None,
+        }
+        .text()
     }
 }

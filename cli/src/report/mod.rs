@@ -8,26 +8,22 @@
 //! |---|---|
 //! | `contacts` | residues in contact in each pose, and where the best clusters gather |
 //! | `columns` | what the columns of `poses.csv` are called, and how many digits are shown |
-//! | `run`, `run_parts` | the report of a run, and what it is made from |
-//! | `run_data` | what the scripts of a run's report read |
+//! | `run` | the report of a run |
+//! | `run_data` | the parts of a run's report, and the data of its scripts |
 //! | `run_words`, `run_cost` | its sections that are words |
-//! | `list`, `lists` | reports that are tables: of batches, ensembles and sweeps |
+//! | `lists` | reports that are tables: of batches, ensembles and sweeps |
 //! | `solids` | reports of collisions and of results of solids |
 //! | `shown` | fields, placements and surfaces, as scripts read them |
 //! | `html` | the page itself: sections, scripts, seal |
-//! | `packed` | bytes as the page holds them |
-//! | `viewer` | the library of the three-dimensional view, where there is one |
+//! | `viewer` | the library of the three-dimensional view, if there is one; bytes as the page holds them |
 //! | `page/` | style and scripts |
 
 mod columns;
 mod html;
-mod list;
 mod lists;
-mod packed;
 mod run;
 mod run_cost;
 mod run_data;
-mod run_parts;
 mod run_words;
 mod shown;
 mod solids;
@@ -35,6 +31,6 @@ mod viewer;
 
 pub use knotdock::interface::run_contacts::{MAX_ROWS, RunContacts};
 pub use lists::Listed;
-pub use run_parts::{ReportBodies, RunReport};
+pub use run_data::{ReportBodies, RunReport};
 pub use solids::SolidsReport;
-pub use viewer::{Viewer, ViewerError};
+pub use viewer::Viewer;

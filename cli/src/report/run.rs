@@ -2,7 +2,7 @@
 
 use crate::report::MAX_ROWS;
 use crate::report::html::{Page, section};
-use crate::report::run_parts::{ReportBodies, RunReport};
+use crate::report::run_data::{ReportBodies, RunReport};
 use crate::report::shown::LACKING;
 use crate::report::viewer::Viewer;
 use crate::report::{run_cost, run_data, run_words};
@@ -21,7 +21,7 @@ impl RunReport<'_> {
         }
     }
 
-    /// The page with so many rows.
+    /// The page with `rows` rows.
     fn page(&self, rows: usize, viewer: Option<&Viewer>) -> String {
         let data = run_data::data(self, rows);
         let explorer = include_str!("page/explorer.html");

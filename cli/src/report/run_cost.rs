@@ -1,111 +1,74 @@
-//! What a run cost, its options, and how to repeat it.
+//! The cost of a run, its options, and how to repeat it.
 
 use std::fmt::Write as _;
 
 use serde_json::Value;
 
 use crate::report::html::{escaped, table};
-use crate::report::run_parts::RunReport;
+use crate::report::run_data::RunReport;
 use crate::shell_word::shell_word;
+use knotdock::options::definition::Definition;
 use knotdock::options::definitions;
+
+/// The objects of a list in JSON.
+fn items(list: &Value) -> impl Iterator<Item = &Value> {
+    list.as_array().into_iter().flatten()
+}
+
+/// A number with `digits` decimals; empty if there is none.
+fn decimals(value: &Value, digits: usize) -> String {
+    let value = value.as_f64();
+    value.map_or_else(String::new, |value| format!("{value:.digits$}"))
+}
 
 /// Effects, errors and times.
 pub(super) fn cost(report: &RunReport) -> String {
     let record = report.record;
-    let mut html = String::new();
-    let error = &record["error"];
-    let share = |value: &Value| {
-        value.as_f64().map_or_else(
-            || "not measured".to_owned(),
-            |value| format!("{:.2}%", 100.0 * value),
-        )
-    };
-    let lines = [
-        ["error", "share of the best score"]
-            .map(str::to_owned)
-            .to_vec(),
-        vec![
-            "fast path against the exact sum, rms over the best poses".to_owned(),
-            share(&error["rms"]),
-        ],
-        vec!["the same, largest".to_owned(), share(&error["worst"])],
-        vec![
-            "score removed by the low-pass filter".to_owned(),
-            share(&error["low_pass_share"]),
-        ],
-        vec![
-            "compression of the radius axis".to_owned(),
-            share(&error["lifted_axis"]),
-        ],
+    let errors = [
+        (
+            "fast path against the exact sum, rms over the best poses",
+            "rms",
+        ),
+        ("the same, largest", "worst"),
+        ("score removed by the low-pass filter", "low_pass_share"),
+        ("compression of the radius axis", "lifted_axis"),
     ];
-    html += &table("Measured errors", &lines);
-    let times = record["timing"]["effects"].as_array();
-    let time_of = |effect: &Value| {
-        let mut times = times.into_iter().flatten();
-        let found = times.find(|time| time["effect"] == *effect)?;
-        found["milliseconds_per_rotation"].as_f64()
-    };
-    let mut lines = vec![
-        ["effect", "on", "why", "functions", "ms a rotation"]
-            .map(str::to_owned)
-            .to_vec(),
-    ];
-    for effect in record["effects"].as_array().into_iter().flatten() {
-        let time = time_of(&effect["effect"]);
-        lines.push(vec![
+    let errors = errors.map(|(what, name)| {
+        let share = record["error"][name].as_f64();
+        let share = share.map(|share| format!("{:.2}%", 100.0 * share));
+        vec![what.to_owned(), share.unwrap_or("not measured".to_owned())]
+    });
+    let times = &record["timing"];
+    let effects = items(&record["effects"]).map(|effect| {
+        let time = items(&times["effects"]).find(|time| time["effect"] == effect["effect"]);
+        let time = time.map(|time| decimals(&time["milliseconds_per_rotation"], 2));
+        vec![
             words(&effect["effect"]),
-            match effect["on"] == true {
-                true => "on".to_owned(),
-                false => "off".to_owned(),
-            },
+            if effect["on"] == true { "on" } else { "off" }.to_owned(),
             words(&effect["reason"]),
-            effect["functions"]
-                .as_f64()
-                .map_or_else(String::new, |functions| format!("{functions:.1}")),
-            time.map_or_else(String::new, |time| format!("{time:.2}")),
-        ]);
+            decimals(&effect["functions"], 1),
+            time.unwrap_or_default(),
+        ]
+    });
+    let terms = items(&record["pose_terms"]).map(|term| {
+        let name = words(&term["id"]).replace('_', " ");
+        vec![name, words(&term["weight"]), words(&term["unit"])]
+    });
+    let mut terms = terms.peekable();
+    let stages = items(&times["stages"]).map(|stage| {
+        let [wall, cpu] = ["wall_seconds", "cpu_seconds"].map(|name| decimals(&stage[name], 2));
+        vec![words(&stage["name"]), wall, cpu]
+    });
+    let mut html = table("Measured errors", "error|share of the best score", errors);
+    let header = "effect|on|why|functions|ms a rotation";
+    html += &table("Effects of the search", header, effects);
+    if terms.peek().is_some() {
+        let header = "term of the pose score|weight|unit";
+        html += &table("Other score terms", header, terms);
     }
-    html += &table("Effects of the search", &lines);
-    let mut lines = vec![
-        ["term of the pose score", "weight", "unit"]
-            .map(str::to_owned)
-            .to_vec(),
-    ];
-    for term in record["pose_terms"].as_array().into_iter().flatten() {
-        lines.push(vec![
-            words(&term["id"]).replace('_', " "),
-            words(&term["weight"]),
-            words(&term["unit"]),
-        ]);
-    }
-    if lines.len() > 1 {
-        html += &table("Other score terms", &lines);
-    }
-    let mut lines = vec![
-        ["stage", "seconds", "CPU seconds"]
-            .map(str::to_owned)
-            .to_vec(),
-    ];
-    let seconds = |value: &Value| {
-        value
-            .as_f64()
-            .map_or_else(String::new, |value| format!("{value:.2}"))
-    };
-    for stage in record["timing"]["stages"].as_array().into_iter().flatten() {
-        lines.push(vec![
-            words(&stage["name"]),
-            seconds(&stage["wall_seconds"]),
-            seconds(&stage["cpu_seconds"]),
-        ]);
-    }
-    html += &table("Times", &lines);
+    html += &table("Times", "stage|seconds|CPU seconds", stages);
     let plan = &record["plan"];
-    let grid: Vec<String> = plan["grid"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .map(words)
-        .collect();
+    let grid: Vec<String> = items(&plan["grid"]).map(words).collect();
     let _ = writeln!(
         html,
         "<p>Orientations lie at most {:.1} degrees from one that was searched. The grid is {} at {} {}. The run used {} \
@@ -142,13 +105,8 @@ fn words(value: &Value) -> String {
 pub(super) fn options(report: &RunReport) -> String {
     let quoted = |end: &str| shell_word(&format!("{}{end}", report.directory)).into_owned();
     let [directory, record, first] = ["", "/run.json", "/top/rank_0001.pdb"].map(quoted);
-    let command: Vec<_> = report.record["machine"]["command"]
-        .as_array()
-        .into_iter()
-        .flatten()
-        .filter_map(Value::as_str)
-        .map(shell_word)
-        .collect();
+    let command = items(&report.record["machine"]["command"]).filter_map(Value::as_str);
+    let command: Vec<_> = command.map(shell_word).collect();
     let lines = [
         ("The command was", command.join(" ")),
         (
@@ -179,27 +137,29 @@ pub(super) fn options(report: &RunReport) -> String {
     }
     html += "</dl>\n";
     let record = &report.record["options"];
-    let line = |option: &knotdock::options::definition::Definition| {
+    let line = |option: &Definition| {
         let value = &record[option.subject()][option.name()];
         vec![option.long().to_owned(), words(value)]
     };
-    let head = ["option", "value"].map(str::to_owned).to_vec();
-    let given: Vec<Vec<String>> = report.options.given().map(line).collect();
-    html += &match given.is_empty() {
-        true => "<p>All options have their defaults.</p>\n".to_owned(),
-        false => table(
+    let mut given = report.options.given().map(line).peekable();
+    html += &match given.peek() {
+        None => "<p>All options have their defaults.</p>\n".to_owned(),
+        Some(_) => table(
             "Options that differ from their defaults",
-            &[vec![head.clone()], given].concat(),
+            "option|value",
+            given,
         ),
     };
-    let recorded = definitions()
-        .iter()
-        .filter(|option| option.subject() != "machine");
-    let all: Vec<Vec<String>> = std::iter::once(head).chain(recorded.map(line)).collect();
+    let recorded = definitions().iter();
+    let recorded = recorded.filter(|option| option.subject() != "machine");
+    let all = table(
+        "Every option with its value",
+        "option|value",
+        recorded.map(line),
+    );
     let _ = write!(
         html,
-        "<details><summary>All options</summary>\n{}</details>\n",
-        table("Every option with its value", &all)
+        "<details><summary>All options</summary>\n{all}</details>\n"
     );
     html
 }

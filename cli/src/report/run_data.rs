@@ -1,13 +1,13 @@
-//! What the scripts of a run's report read, as JSON.
+//! The parts of a run's report, and the data of its scripts, as JSON.
 //!
 //! | entry | what |
 //! |---|---|
-//! | `sides` | what the two bodies are called |
+//! | `sides` | names of the two bodies |
 //! | `columns`, `rows` | the table: how each column is shown, and its fields |
 //! | `terms` | columns that add up to the pose score |
 //! | `placed` | of each row, what moves each placed body: qw, qx, qy, qz, tx, ty, tz |
 //! | `bodies` | receptor and ligand: text of a structure, or vertices and triangles |
-//! | `contacts` | of each row a text, five numbers a pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
+//! | `contacts` | of each row a text, five numbers per pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
 //! | `shares` | of each side, clusters that touch each residue; `counted` of them were looked at |
 //! | `chains` | names of chains in complexes |
 
@@ -18,10 +18,35 @@ use knotdock_structures::molecule::{Format, Molecule, ResidueSelection, fits, wr
 use serde_json::{Value, json};
 
 use crate::report::columns::{ShownColumn, is_term, shown};
-use crate::report::run_parts::{ReportBodies, RunReport};
 use crate::report::shown::{placement, rounded, solid};
+use knotdock::interface::run_contacts::RunContacts;
 use knotdock::interface::{Contact, ResidueName, heavy_residues};
+use knotdock::options::DockOptions;
+use knotdock::output::files::assemblies::Surface;
+use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
+
+/// The bodies of a run.
+pub enum ReportBodies<'a> {
+    /// Molecules, and their contacts in the poses of the table.
+    Molecules([&'a Molecule; 2], &'a RunContacts<'a>),
+    /// Meshes, or balls as surfaces.
+    Solids([Surface<'a>; 2]),
+}
+
+/// A finished run, as it is shown.
+pub struct RunReport<'a> {
+    /// Its run.json.
+    pub record: &'a Value,
+    /// The options in it.
+    pub options: &'a DockOptions,
+    /// Its poses.csv.
+    pub table: &'a PoseTable,
+    /// The docked bodies.
+    pub bodies: ReportBodies<'a>,
+    /// Its directory as commands would name it.
+    pub directory: &'a str,
+}
 
 /// The data, with the first `count` rows.
 pub(super) fn data(report: &RunReport, count: usize) -> Value {
@@ -129,7 +154,7 @@ fn molecule(
     })
 }
 
-/// The residue of each atom; of a hydrogen that of the heavy atoms beside it, where there are any.
+/// The residue of each atom; for a hydrogen, that of the heavy atoms of its name, if there are any.
 fn residue_of_atom(molecule: &Molecule) -> Vec<Option<usize>> {
     let mut residues = vec![None; molecule.atoms.len()];
     let mut of_name = HashMap::new();

@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use crate::report::html::escaped;
+use crate::report::html::{escaped, paragraph};
+use crate::report::run_data::RunReport;
 use crate::report::run_data::active;
-use crate::report::run_parts::RunReport;
 use crate::tables::report::counted;
 use knotdock::table_text::named_columns::listed;
 
@@ -25,7 +25,7 @@ pub(super) fn title(report: &RunReport) -> String {
     }
 }
 
-/// What was docked and what came of it, where so many rows are shown.
+/// The inputs and the results, if `shown` rows are shown.
 pub(super) fn summary(report: &RunReport, shown: usize) -> String {
     let mut sentences = Vec::new();
     let record = report.record;
@@ -107,16 +107,10 @@ pub(super) fn summary(report: &RunReport, shown: usize) -> String {
         }
     }
     sentences.push(found(report, shown));
-    let words: String = sentences
-        .iter()
-        .map(|sentence| escaped(sentence) + " ")
-        .collect();
-    let mut html = format!("<p>{}</p>\n", words.trim_end());
-    html += &warnings(record);
-    html
+    paragraph(&sentences) + &warnings(record)
 }
 
-/// What a known complex says of the rows.
+/// The rows in the light of a known complex.
 fn found(report: &RunReport, shown: usize) -> String {
     let is_good = |row: &usize| {
         let class = report.table.field(*row, "capri");

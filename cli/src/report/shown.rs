@@ -7,7 +7,7 @@ use serde_json::{Value, json};
 use crate::report::columns::ShownColumn;
 use knotdock::output::files::assemblies::Surface;
 
-/// What stands in the place of the view, where there is none.
+/// Text in place of the view, if there is none.
 pub(super) const LACKING: &str = "<p>This report has no three-dimensional view: the program was built without it. \
                                   <code>npm install 3dmol</code> fetches it, and <code>--viewer \
                                   node_modules/3dmol</code> of <code>knotdock report</code>, <code>collide</code>, \
@@ -31,7 +31,7 @@ fn cell((column, field): (&ShownColumn, &str)) -> Value {
     }
 }
 
-/// A number with so many decimals.
+/// A number with `digits` decimals.
 pub(super) fn rounded(value: f64, digits: i32) -> f64 {
     let scale = 10_f64.powi(digits);
     (value * scale).round() / scale
@@ -44,7 +44,7 @@ pub(super) fn placement(pose: &Pose) -> Vec<f64> {
     rotation.into_iter().chain(translation).collect()
 }
 
-/// A length with eight digits: four decimals of what is a thousand across.
+/// A length with eight digits: four decimals for a body of 1,000 units.
 fn significant(value: f64) -> f64 {
     match value.abs() > 0.0 && value.is_finite() {
         true => rounded(value, (7 - value.abs().log10().floor() as i32).clamp(0, 15)),
@@ -52,7 +52,7 @@ fn significant(value: f64) -> f64 {
     }
 }
 
-/// A surface, flat; without triangles where it has too many to be shown.
+/// A surface, flat; without triangles if it has too many to be shown.
 pub(super) fn solid(surface: &Surface) -> Value {
     let count = surface.triangles.len();
     if count > MAX_TRIANGLES {

@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::report::MAX_ROWS;
 use crate::report::columns::of_table;
-use crate::report::html::{Page, escaped, section};
+use crate::report::html::{Page, paragraph, section};
 use crate::report::shown::{LACKING, placement, rows, solid};
 use crate::report::viewer::Viewer;
 use knotdock::output::files::assemblies::Surface;
@@ -15,9 +15,9 @@ use knotdock::output::files::assemblies::Surface;
 pub struct SolidsReport<'a> {
     /// Title of the page.
     pub title: String,
-    /// What is said of them.
+    /// Sentences on them.
     pub sentences: Vec<String>,
-    /// What the two are called.
+    /// Names of the two.
     pub names: [&'a str; 2],
     /// Their surfaces, each in the frame of its file.
     pub surfaces: [Surface<'a>; 2],
@@ -29,7 +29,7 @@ pub struct SolidsReport<'a> {
     pub records: Vec<StringRecord>,
     /// Columns that are shown at first.
     pub main: &'a [&'a str],
-    /// Where the second solid is in each row.
+    /// Pose of the second solid in each row.
     pub poses: &'a [Pose],
 }
 
@@ -56,11 +56,7 @@ impl SolidsReport<'_> {
             "placed": placed.map(|pose| [placement(pose)]).collect::<Vec<_>>(),
             "bodies": self.surfaces.iter().map(solid).collect::<Value>(),
         });
-        let sentences = self
-            .sentences
-            .iter()
-            .map(|sentence| escaped(sentence) + " ");
-        let words = format!("<p>{}</p>\n", sentences.collect::<String>().trim_end());
+        let words = paragraph(&self.sentences);
         let lacking = match viewer {
             Some(_) => "",
             None => LACKING,

@@ -8,10 +8,10 @@ use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::members::copy_range;
 use super::part::{Index, Range};
+use super::poses_file::{copy_range, header};
 use super::record::BatchRecord;
-use super::{POSES, SHARDS, Shard, pose_rows};
+use super::{POSES, SHARDS, Shard};
 use crate::tables::batch_results::{RESULTS, head};
 use knotdock::output::files::folder::{make_folder, open_own};
 use knotdock::output::files::whole_file::{StagedFile, is_link, leftovers};
@@ -19,7 +19,7 @@ use knotdock::output::files::whole_file::{StagedFile, is_link, leftovers};
 /// Files that are open at the same time.
 const OPEN: usize = 128;
 
-/// What was merged.
+/// The result of a merge.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Merged {
     /// The shards that were there.
@@ -28,13 +28,13 @@ pub struct Merged {
     pub counts: [usize; 3],
     /// The table of results.
     pub results: PathBuf,
-    /// The file of poses, where poses are kept.
+    /// The file of poses, if poses are kept.
     pub poses: Option<PathBuf>,
-    /// What ended commands left beside them.
+    /// Files that ended commands left beside them.
     pub leftovers: Vec<PathBuf>,
 }
 
-/// A pair of the batch: its shard, and where its row and its poses are in the shard's files.
+/// A pair of the batch: its shard, and the ranges of its row and its poses in the shard's files.
 struct MergedPair {
     shard: usize,
     is_done: bool,
@@ -52,7 +52,8 @@ struct MergedPair {
 pub fn merge(
     directories: &[PathBuf],
     out: &Path,
-    (partial, force): (bool, bool),
+    partial: bool,
+    force: bool,
 ) -> Result<Merged, Error> {
     let folder_of =
         |shard: Shard, directory: usize| directories[directory].join(SHARDS).join(shard.folder());
@@ -68,14 +69,13 @@ pub fn merge(
             .as_ref()
             .is_none_or(|first| record.is_of_batch_of(first));
         if record.shard != shard || !is_of_batch {
-            let beside = shards
-                .first()
-                .map_or(folder.clone(), |one| folder_of(one.0, one.1));
+            let other = shards.first();
+            let other = other.map_or(folder.clone(), |one| folder_of(one.0, one.1));
             return Err(file_error::refused(
                 folder,
                 format!(
                     "this shard is of other pairs or options, or by another version, than that in {}",
-                    beside.display()
+                    other.display()
                 ),
                 "merge only shards of one table of pairs, docked with the same options, into the same number of shards",
             ));
@@ -142,7 +142,7 @@ pub fn merge(
     let left = [RESULTS, POSES].map(|name| leftovers(&out.join(name)));
     let mut written = vec![copied(RESULTS, &head(), |pair| Some(pair.row))?];
     if record.keep.has_poses() {
-        let header = pose_rows::header().map_err(|error| file_error::writing(out, error))?;
+        let header = header().map_err(|error| file_error::writing(out, error))?;
         written.push(copied(POSES, &header, |pair| pair.poses)?);
     }
     // Neither takes its place before both may.
@@ -242,7 +242,7 @@ fn complete(
     }
 }
 
-/// Which of the numbers from 1 to `last` are not among some that rise, in words; `None` where all are.
+/// The numbers from 1 to `last` that are missing in a rising sequence, as text; `None` if none is missing.
 fn gaps(numbers: impl Iterator<Item = usize>, last: usize) -> Option<String> {
     const SHOWN: usize = 10;
     let mut gaps = Vec::new();

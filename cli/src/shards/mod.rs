@@ -5,23 +5,22 @@
 //! | file | what |
 //! |---|---|
 //! | `batch.json` | which pairs and options it is of ([`record`]) |
-//! | `results.csv` | a row a pair, in the order in which they were done until all are |
-//! | `poses.csv.gz` | the first poses of each pair: a gzip member a pair |
-//! | `attempts.csv` | the names of pairs that were started, so that a pair that ends the process is not started for ever |
+//! | `results.csv` | one row per pair, in the order in which they were done until all are |
+//! | `poses.csv.gz` | the first poses of each pair: one gzip member per pair |
+//! | `attempts.csv` | the names of pairs that were started, so that a pair that ends the process is given up in the end |
 //!
 //! A pair's poses are written first, then its row, each to the device ([`part`]). A batch that is killed goes on with
-//! the pairs that have not both. [`merge`] puts the pairs of all shards in the order of the table: the same bytes for
+//! the pairs that lack one of them. [`merge`] puts the pairs of all shards in the order of the table: the same bytes for
 //! any number of shards.
 
-mod members;
 pub mod merge;
 pub mod part;
-mod pose_rows;
+mod poses_file;
 pub mod record;
 pub mod scratch;
 mod shard;
 
-pub use pose_rows::{PosesOfPair, WIDE_COLUMNS};
+pub use poses_file::{PosesOfPair, WIDE_COLUMNS};
 pub use shard::Shard;
 
 /// Name of the folder that holds the folders of shards.

@@ -1,5 +1,4 @@
-//! The files of a batch or a shard as they grow: what is there is known when they are opened, and what is added is
-//! whole.
+//! The growing files of a batch or a shard: opening them indexes their pairs, and each pair is added whole.
 
 use knotdock::output::files::file_error;
 use knotdock_structures::Error;
@@ -8,9 +7,9 @@ use std::fs::File;
 use std::io::{self, BufReader};
 use std::path::{Path, PathBuf};
 
-use super::members::{Members, copy_range};
+use super::poses_file::{Members, copy_range, header};
 use super::record::BatchRecord;
-use super::{ATTEMPTS, POSES, PosesOfPair, pose_rows};
+use super::{ATTEMPTS, POSES, PosesOfPair};
 use crate::tables::batch_results::{PairResult, RESULTS, head, name_and_status, row};
 use knotdock::output::files::appended::AppendedFile;
 use knotdock::output::files::folder::{next_line, open_own};
@@ -33,8 +32,8 @@ pub struct Part {
 }
 
 impl Part {
-    /// Opens the files in a folder, or makes them. Where they end in the midst of a pair, that pair's part is cut off;
-    /// so is what comes behind a place that is damaged.
+    /// Opens the files in a folder, or makes them. If they end in the middle of a pair, that pair's part is cut off;
+    /// so is everything after a damaged place.
     ///
     /// # Errors
     /// [`Error`] when a file cannot be read or written, or is another's.
@@ -44,26 +43,24 @@ impl Part {
         let [results, poses, attempts] = [RESULTS, POSES, ATTEMPTS].map(|name| folder.join(name));
         let (mut started, mut whole) = (HashMap::new(), 0);
         read_lines(&attempts, |line, (_, end)| {
-            *started
-                .entry(String::from_utf8_lossy(line).into_owned())
-                .or_insert(0) += 1;
+            let name = String::from_utf8_lossy(line).into_owned();
+            *started.entry(name).or_insert(0) += 1;
             whole = end;
             true
         })?;
         let mut part = Self {
             folder: folder.to_owned(),
             results: AppendedFile::open(&results, found.results_end)?,
-            poses: match has_poses {
-                true => Some(AppendedFile::open(&poses, found.poses_end)?),
-                false => None,
-            },
+            poses: has_poses
+                .then(|| AppendedFile::open(&poses, found.poses_end))
+                .transpose()?,
             attempts: AppendedFile::open(&attempts, whole)?,
             pairs: found.pairs,
             started,
             lost: found.lost,
         };
         if let (0, Some(poses)) = (found.poses_end, &mut part.poses) {
-            let header = pose_rows::header().map_err(|error| file_error::writing(folder, error))?;
+            let header = header().map_err(|error| file_error::writing(folder, error))?;
             poses.append(&header)?;
         }
         if found.results_end == 0 {
@@ -98,7 +95,7 @@ impl Part {
         Ok(())
     }
 
-    /// Adds what came of a pair: its poses, where they are kept and it has some, then its row.
+    /// Adds the result of a pair: its poses, if they are kept and it has some, then its row.
     ///
     /// # Errors
     /// [`Error`]; the pair is not there then, and nothing of it is in the way.
@@ -125,7 +122,7 @@ impl Part {
         let pairs: Vec<&PairFiles> = names.filter_map(|name| self.pairs.get(name)).collect();
         let folder = &self.folder;
         if let Some(file) = &self.poses {
-            let header = pose_rows::header().map_err(|error| file_error::writing(folder, error))?;
+            let header = header().map_err(|error| file_error::writing(folder, error))?;
             let poses: Vec<Range> = pairs.iter().filter_map(|pair| pair.poses).collect();
             put_in_order(&folder.join(POSES), &header, &poses, file.end())?;
         }
@@ -134,7 +131,7 @@ impl Part {
     }
 }
 
-/// Where something begins and where it ends in a file, in bytes.
+/// Start and end of a part of a file, in bytes.
 pub(super) type Range = (u64, u64);
 
 /// Writes a file anew with some of its parts in another order, if it has them in another.
@@ -154,7 +151,7 @@ fn put_in_order(path: &Path, head: &[u8], parts: &[Range], end: u64) -> Result<(
     sorted.place()
 }
 
-/// What the files of a batch hold of a pair.
+/// A pair in the files of a batch.
 #[derive(Debug)]
 pub(super) struct PairFiles {
     /// Whether it was docked.
@@ -165,7 +162,7 @@ pub(super) struct PairFiles {
     pub poses: Option<Range>,
 }
 
-/// What the files of a part hold.
+/// Index of the files of a part.
 pub(super) struct Index {
     /// Each pair by its name: of several rows or poses the last ones count.
     pub pairs: HashMap<String, PairFiles>,
@@ -178,7 +175,7 @@ impl Index {
     /// Reads the files in a folder, as far as they are whole.
     ///
     /// # Errors
-    /// [`Error`] where they cannot be read, or are no files of a batch.
+    /// [`Error`] if they cannot be read, or are no files of a batch.
     pub fn of(folder: &Path, has_poses: bool) -> Result<Self, Error> {
         let mut poses = HashMap::new();
         let mut poses_end = 0;
@@ -242,7 +239,7 @@ impl Index {
     }
 }
 
-/// Hands on the whole lines of a file and where they are, until `take` wants no more; none where there is no file.
+/// Hands the whole lines of a file and their ranges to `take`, until it returns false; none if there is no file.
 fn read_lines(path: &Path, mut take: impl FnMut(&[u8], Range) -> bool) -> Result<(), Error> {
     if path.symlink_metadata().is_err() {
         return Ok(());
@@ -299,9 +296,11 @@ mod tests {
             .into();
         let record = BatchRecord::new(
             Shard::WHOLE,
-            (2, String::new()),
+            2,
+            String::new(),
             Vec::new(),
-            (Keep::None, None),
+            Keep::None,
+            None,
             own,
         );
         let folder = tempfile::tempdir().unwrap();

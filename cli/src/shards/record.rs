@@ -69,9 +69,11 @@ impl BatchRecord {
     /// The record of a shard of this program.
     pub fn new(
         shard: Shard,
-        (pairs, table_sha256): (usize, String),
+        pairs: usize,
+        table_sha256: String,
         options: Vec<String>,
-        (keep, rows): (Keep, Option<usize>),
+        keep: Keep,
+        rows: Option<usize>,
         own: Vec<(String, String)>,
     ) -> Self {
         Self {
@@ -166,7 +168,7 @@ impl BatchRecord {
         let rows = found.own.len().max(self.own.len());
         let differs = |&row: &usize| found.own.get(row) != self.own.get(row);
         let differing: Vec<usize> = (0..rows).filter(differs).collect();
-        if let Some(&first) = differing.first() {
+        if !differing.is_empty() {
             let of = |row: &usize| {
                 let names = [self, found].map(|record| record.own.get(*row).map(|own| &own.0));
                 let name = names.into_iter().flatten().next();
@@ -175,34 +177,27 @@ impl BatchRecord {
             };
             let shown: Vec<String> = differing.iter().take(5).map(of).collect();
             let more = differing.len().saturating_sub(shown.len());
-            return refused(match (differing.len(), more) {
-                (1, _) => format!("the table of pairs has changed: row {} differs", of(&first)),
-                (_, 0) => format!(
-                    "the table of pairs has changed: rows {} differ",
-                    shown.join(", ")
-                ),
-                _ => format!(
-                    "the table of pairs has changed: rows {} and {more} more differ",
-                    shown.join(", ")
-                ),
-            });
+            let more = match more {
+                0 => String::new(),
+                more => format!(" and {more} more"),
+            };
+            return refused(format!(
+                "the table of pairs has changed in row {}{more}",
+                shown.join(", ")
+            ));
         }
         if found.table_sha256 != self.table_sha256 {
-            return refused(
-                "the table of pairs has changed: rows of other shards differ".to_owned(),
-            );
+            return refused("the table of pairs has changed in rows of other shards".to_owned());
         }
         // A pair's own run says whether it is of the same options.
         let is_same = match self.keep {
             Keep::All => found.keep == Keep::All && found.shard == self.shard,
             _ => found == self,
         };
-        match is_same {
-            true => Ok(()),
-            false => refused(
-                "the directory holds a batch of other options, or by another version".to_owned(),
-            ),
+        if is_same {
+            return Ok(());
         }
+        refused("the directory holds a batch of other options, or by another version".to_owned())
     }
 }
 

@@ -3,33 +3,37 @@
 //! RFC 4180, but with LF as the line end; a row an atom of the model that was read, in the order of the file.
 //! `docs/reference/json_output.md` describes the columns.
 
-use knotdock_structures::Error;
 use std::path::Path;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{AtomFate, DropKind};
+use serde_json::json;
 
+use crate::tables::{Column, write_table};
 use knotdock::output::files::whole_file::write_whole;
-use knotdock::output::tables::fields::number;
-use knotdock::table_text::cells::TableWriter;
 
 /// The columns, in order.
-pub const COLUMNS: [&str; 16] = [
-    "line",
-    "record",
-    "atom",
-    "altloc",
-    "residue",
-    "chain",
-    "number",
-    "insertion",
-    "element",
-    "x",
-    "y",
-    "z",
-    "occupancy",
-    "b_factor",
-    "radius",
-    "dropped",
+const COLUMNS: [Column<AtomFate>; 16] = [
+    ("line", |fate| json!(fate.atom.line)),
+    ("record", |fate| {
+        json!(if fate.atom.hetero { "HETATM" } else { "ATOM" })
+    }),
+    ("atom", |fate| json!(fate.atom.name)),
+    ("altloc", |fate| json!(fate.atom.alternate_location)),
+    ("residue", |fate| json!(fate.atom.residue_name)),
+    ("chain", |fate| json!(fate.atom.chain)),
+    ("number", |fate| json!(fate.atom.residue_number)),
+    ("insertion", |fate| json!(fate.atom.insertion_code)),
+    ("element", |fate| json!(fate.atom.element)),
+    ("x", |fate| json!(fate.atom.position[0])),
+    ("y", |fate| json!(fate.atom.position[1])),
+    ("z", |fate| json!(fate.atom.position[2])),
+    ("occupancy", |fate| json!(fate.atom.occupancy)),
+    ("b_factor", |fate| json!(fate.atom.b_factor)),
+    ("radius", |fate| {
+        json!(fate.dropped.is_none().then_some(fate.atom.radius))
+    }),
+    ("dropped", |fate| json!(fate.dropped.map(reason))),
 ];
 
 /// Writes the table, whole or not at all.
@@ -37,40 +41,7 @@ pub const COLUMNS: [&str; 16] = [
 /// # Errors
 /// [`Error`].
 pub fn write(path: &Path, fates: &[AtomFate]) -> Result<(), Error> {
-    write_whole(path, |file| {
-        let mut table = TableWriter::new(file);
-        table.row(COLUMNS)?;
-        for entry in fates {
-            table.row(fields(entry))?;
-        }
-        table.flush()
-    })
-}
-
-fn fields(entry: &AtomFate) -> [String; COLUMNS.len()] {
-    let atom = &entry.atom;
-    let character = |value: Option<char>| value.map_or(String::new(), String::from);
-    let [x, y, z] = atom.position;
-    [
-        atom.line.to_string(),
-        if atom.hetero { "HETATM" } else { "ATOM" }.to_owned(),
-        atom.name.clone(),
-        character(atom.alternate_location),
-        atom.residue_name.clone(),
-        atom.chain.clone(),
-        atom.residue_number.to_string(),
-        character(atom.insertion_code),
-        atom.element.clone(),
-        number(x),
-        number(y),
-        number(z),
-        number(atom.occupancy),
-        number(atom.b_factor),
-        entry
-            .dropped
-            .map_or_else(|| number(atom.radius), |_| String::new()),
-        entry.dropped.map_or("", reason).to_owned(),
-    ]
+    write_whole(path, |file| write_table(file, &COLUMNS, fates))
 }
 
 /// A reason as the report names it.

@@ -5,8 +5,8 @@ use std::path::Path;
 use csv::StringRecord;
 use serde_json::Value;
 
+use crate::tables::field;
 use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
-use knotdock::output::tables::fields::number;
 use knotdock::table_text::cells::{TableWriter, unquoted};
 
 use knotdock::output::tables::poses::PoseTable;
@@ -87,13 +87,34 @@ impl RunSummary {
         }
     }
 
+    /// The run in a line of a batch's report; `seconds` on the clock if it was docked in this call.
+    pub fn line(&self, seconds: Option<f64>) -> String {
+        let best = |column: &str, digits: usize| {
+            let value = self.best[column].as_f64();
+            value.map(|value| format!("{value:.digits$}"))
+        };
+        let mut words = format!(
+            "{} clusters, best pose score {}",
+            self.counts[1].unwrap_or(0),
+            best("pose_score", 1).unwrap_or_default()
+        );
+        for (name, column, digits) in [("z-score", "z_score", 1), ("DockQ", "dockq", 2)] {
+            if let Some(value) = best(column, digits) {
+                words += &format!(", {name} {value}");
+            }
+        }
+        if let Some(rank) = self.first_acceptable {
+            words += &format!("; the first acceptable one at rank {rank}");
+        }
+        words
+            + &seconds.map_or("; done before".to_owned(), |seconds| {
+                format!("; {seconds:.1} s")
+            })
+    }
+
     /// A column of the first row as a field.
     fn best(&self, name: &str) -> String {
-        match &self.best[name] {
-            Value::Null => String::new(),
-            Value::String(text) => text.clone(),
-            value => value.as_f64().map_or_else(|| value.to_string(), number),
-        }
+        field(&self.best[name])
     }
 }
 

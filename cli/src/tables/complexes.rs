@@ -2,12 +2,10 @@
 
 use std::io;
 
-use serde_json::{Map, Value, json};
+use serde_json::{Value, json};
 
-use knotdock::evaluate::PoseQuality;
-use knotdock::output::tables::fields::number;
-use knotdock::output::tables::quality;
-use knotdock::table_text::cells::TableWriter;
+use crate::tables::{Column, object, write_table};
+use knotdock::evaluate::{Criterion, PoseQuality};
 
 /// A complex, and how near it is to the known one.
 #[derive(Clone, Debug)]
@@ -28,60 +26,48 @@ pub struct EvaluatedComplex {
     pub quality: PoseQuality,
 }
 
-impl EvaluatedComplex {
-    /// Its row as a JSON object.
-    pub fn object(&self) -> Value {
-        let mut object = Map::new();
-        object.insert("file".to_owned(), json!(self.file));
-        object.insert("model".to_owned(), json!(self.model));
-        object.insert("chains_1".to_owned(), json!(self.chains[0]));
-        object.insert("chains_2".to_owned(), json!(self.chains[1]));
-        object.extend(quality::object(&self.quality));
-        object.insert("interface_share".to_owned(), json!(self.matched));
-        object.insert("native_chains".to_owned(), json!(self.native_chains));
-        object.insert("backbone_rmsd_1".to_owned(), json!(self.fits[0]));
-        object.insert("backbone_rmsd_2".to_owned(), json!(self.fits[1]));
-        Value::Object(object)
-    }
+/// The columns, in order; those of [`JSON_ALONE`] are not in the file.
+const COLUMNS: [Column<EvaluatedComplex>; 15] = [
+    ("file", |row| json!(row.file)),
+    ("model", |row| json!(row.model)),
+    ("chains_1", |row| json!(row.chains[0])),
+    ("chains_2", |row| json!(row.chains[1])),
+    ("irmsd", |row| json!(row.quality.irmsd)),
+    ("lrmsd", |row| json!(row.quality.lrmsd)),
+    ("fnat", |row| json!(row.quality.fnat)),
+    ("dockq", |row| json!(row.quality.dockq)),
+    ("capri", |row| json!(row.quality.capri.name())),
+    ("acceptable", |row| {
+        json!(Criterion::Acceptable.is_met(&row.quality))
+    }),
+    ("near_native", |row| {
+        json!(Criterion::NearNative.is_met(&row.quality))
+    }),
+    ("interface_share", |row| json!(row.matched)),
+    ("native_chains", |row| json!(row.native_chains)),
+    ("backbone_rmsd_1", |row| json!(row.fits[0])),
+    ("backbone_rmsd_2", |row| json!(row.fits[1])),
+];
+
+const JSON_ALONE: [&str; 4] = [
+    "acceptable",
+    "near_native",
+    "backbone_rmsd_1",
+    "backbone_rmsd_2",
+];
+
+/// The rows as JSON objects.
+pub fn objects(rows: &[EvaluatedComplex]) -> Vec<Value> {
+    let objects = rows.iter().map(|row| object(&COLUMNS, row).into());
+    objects.collect()
 }
 
-/// Writes a row for each complex: `file`, `model`, `chains_1`, `chains_2`, `irmsd` and `lrmsd` in Å, `fnat`, `dockq`,
-/// `capri`, `interface_share` (the share of the known complex's interface residues that the file has) and
-/// `native_chains` (the chains with those of the known complex, as `A:E,B:F`).
+/// Writes a row for each complex.
 ///
 /// # Errors
 /// Those of the stream.
 pub fn write_complexes(rows: &[EvaluatedComplex], stream: &mut dyn io::Write) -> io::Result<()> {
-    let mut table = TableWriter::new(stream);
-    let header = [
-        "file",
-        "model",
-        "chains_1",
-        "chains_2",
-        "irmsd",
-        "lrmsd",
-        "fnat",
-        "dockq",
-        "capri",
-        "interface_share",
-        "native_chains",
-    ];
-    table.row(header)?;
-    for row in rows {
-        let quality = &row.quality;
-        table.row([
-            row.file.clone(),
-            row.model.to_string(),
-            row.chains[0].clone(),
-            row.chains[1].clone(),
-            number(quality.irmsd),
-            number(quality.lrmsd),
-            number(quality.fnat),
-            number(quality.dockq),
-            quality.capri.name().to_owned(),
-            number(row.matched),
-            row.native_chains.clone(),
-        ])?;
-    }
-    table.flush()
+    let columns = COLUMNS.iter();
+    let columns = columns.filter(|(name, _)| !JSON_ALONE.contains(name));
+    write_table(stream, columns, rows)
 }

@@ -6,8 +6,8 @@ use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::POSE_TERMS;
 use serde_json::{Map, Value, json};
 
-use knotdock::interface::{Interface, PlacedScore};
-use knotdock::output::tables::fields::number;
+use crate::tables::{Column, field, write_table};
+use knotdock::interface::{Interface, PlacedScore, ResiduePair};
 use knotdock::table_text::cells::TableWriter;
 
 /// A complex.
@@ -90,51 +90,32 @@ pub fn write_rows(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Resu
 }
 
 /// Columns of the table of pairs.
-const PAIRS: [&str; 12] = [
-    "file",
-    "model",
-    "chain_1",
-    "residue_1",
-    "name_1",
-    "chain_2",
-    "residue_2",
-    "name_2",
-    "distance",
-    "hydrogen_bonds",
-    "hydrogen_bond_distance",
-    "salt_bridge",
-];
+fn pair_columns<'a>() -> [Column<(&'a InterfaceRow, &'a ResiduePair)>; 12] {
+    [
+        ("file", |(row, _)| json!(row.file)),
+        ("model", |(row, _)| json!(row.model)),
+        ("chain_1", |(_, pair)| json!(pair.residues[0].chain)),
+        ("residue_1", |(_, pair)| json!(pair.residues[0].number)),
+        ("name_1", |(_, pair)| json!(pair.residues[0].name)),
+        ("chain_2", |(_, pair)| json!(pair.residues[1].chain)),
+        ("residue_2", |(_, pair)| json!(pair.residues[1].number)),
+        ("name_2", |(_, pair)| json!(pair.residues[1].name)),
+        ("distance", |(_, pair)| json!(pair.distance)),
+        ("hydrogen_bonds", |(_, pair)| json!(pair.hydrogen_bonds)),
+        ("hydrogen_bond_distance", |(_, pair)| {
+            json!(pair.hydrogen_bond_distance)
+        }),
+        ("salt_bridge", |(_, pair)| json!(pair.salt_bridge)),
+    ]
+}
 
 /// Writes a row for each pair of residues in contact.
 ///
 /// # Errors
 /// Those of the stream.
 pub fn write_pairs(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Result<()> {
-    let mut table = TableWriter::new(stream);
-    table.row(PAIRS)?;
-    for row in rows {
-        for pair in &row.interface.pairs {
-            let [a, b] = &pair.residues;
-            let distance = number(pair.distance);
-            let bonds = pair.hydrogen_bonds.to_string();
-            let bond = pair.hydrogen_bond_distance.map(number).unwrap_or_default();
-            let bridge = pair.salt_bridge.to_string();
-            let model = row.model.to_string();
-            table.row([
-                &row.file, &model, &a.chain, &a.number, &a.name, &b.chain, &b.number, &b.name,
-                &distance, &bonds, &bond, &bridge,
-            ])?;
-        }
-    }
-    table.flush()
-}
-
-/// A value as a field.
-fn field(value: &Value) -> String {
-    match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        Value::Number(value) if value.is_f64() => value.as_f64().map(number).unwrap_or_default(),
-        value => value.to_string(),
-    }
+    let pairs = rows
+        .iter()
+        .flat_map(|row| row.interface.pairs.iter().map(move |pair| (row, pair)));
+    write_table(stream, &pair_columns(), pairs)
 }

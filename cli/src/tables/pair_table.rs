@@ -2,7 +2,7 @@
 
 use knotdock_structures::Error;
 use std::collections::HashSet;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use csv::StringRecord;
 
@@ -40,46 +40,6 @@ impl PairRow {
     }
 }
 
-/// Why a table of pairs cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum PairTableError {
-    /// The file cannot be read, is not CSV, or a row has more or fewer fields than the header.
-    #[error("{} is not a table of pairs: {message}", path.display())]
-    Csv {
-        /// The file.
-        path: PathBuf,
-        /// 1-based line, where known.
-        line: Option<u64>,
-        /// The fault, in words.
-        message: String,
-    },
-    /// The file cannot be opened.
-    #[error("cannot read {}: {source}", path.display())]
-    Open {
-        /// The file.
-        path: PathBuf,
-        /// The system's message.
-        source: std::io::Error,
-    },
-}
-
-impl PairTableError {
-    /// The file in question.
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::Csv { path, .. } | Self::Open { path, .. } => path,
-        }
-    }
-
-    /// The 1-based line in question, where there is one.
-    pub fn line(&self) -> Option<u64> {
-        match self {
-            Self::Csv { line, .. } => *line,
-            Self::Open { .. } => None,
-        }
-    }
-}
-
 /// Reads a table of pairs: a header with `receptor` and `ligand`, perhaps `name`, and options of `knotdock dock`,
 /// then at least one row. A row needs no ligand if it is docked into a ring: by a column `symmetry`, or because all
 /// are (`rings`).
@@ -89,16 +49,19 @@ impl PairTableError {
 /// names may have capital letters, and blanks or `-` for `_`.
 ///
 /// # Errors
-/// [`PairTableError`].
-pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, PairTableError> {
-    let bytes = read_bounded(path, MAX_PAIRS).map_err(|source| PairTableError::Open {
-        path: path.to_owned(),
-        source,
-    })?;
-    let wrong = |line: Option<u64>, message: String| PairTableError::Csv {
-        path: path.to_owned(),
-        line,
-        message,
+/// [`Error`], with file and line.
+pub fn read_pairs(path: &Path, rings: bool) -> Result<Vec<PairRow>, Error> {
+    let refused = |message: String| {
+        Error::input(message).at(path).help(
+            "give a CSV file with columns `receptor` and `ligand`, optionally `name` and options of `knotdock dock`, \
+             and a row for each pair",
+        )
+    };
+    let name = path.display();
+    let bytes = read_bounded(path, MAX_PAIRS)
+        .map_err(|source| refused(format!("cannot read {name}: {source}")))?;
+    let wrong = |line: Option<u64>, fault: String| {
+        refused(format!("{name} is not a table of pairs: {fault}")).on_line(line)
     };
     let (text, delimiter) = plain(bytes).map_err(|message| wrong(None, message))?;
     let line = |position: &csv::Position| line_of(text.as_bytes(), position, COMMENT);
@@ -171,21 +134,11 @@ fn row(header: &StringRecord, record: &StringRecord, line: u64) -> PairRow {
     row
 }
 
-impl From<PairTableError> for Error {
-    fn from(error: PairTableError) -> Self {
-        Self::input(&error)
-            .at(error.path())
-            .on_line(error.line())
-            .help("give a CSV file with columns `receptor` and `ligand`, optionally `name` and options of \
-                `knotdock dock`, and a row for each pair")
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Vec<PairRow>, PairTableError> {
+    fn read(text: &str) -> Result<Vec<PairRow>, Error> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("pairs.csv");
         std::fs::write(&path, text).unwrap();
@@ -239,7 +192,7 @@ mod tests {
 
     #[test]
     fn tables_that_are_none_are_refused_by_line() {
-        for (text, line, said) in [
+        for (text, line, fault) in [
             ("", Some(1), "no column `receptor`"),
             ("receptor,name\na.pdb,x\n", Some(1), "no column `ligand`"),
             ("# pairs\na;b\n", Some(2), "the first line has `a`, `b`"),
@@ -252,11 +205,10 @@ mod tests {
         ] {
             let error = read(text).unwrap_err();
             assert_eq!(error.line(), line, "{text}");
-            assert!(error.to_string().contains(said), "{error}");
+            assert!(error.to_string().contains(fault), "{error}");
         }
-        assert!(matches!(
-            read_pairs(Path::new("nowhere.csv"), false),
-            Err(PairTableError::Open { .. })
-        ));
+        let error = read_pairs(Path::new("nowhere.csv"), false).unwrap_err();
+        assert_eq!(error.file(), Some(Path::new("nowhere.csv")));
+        assert!(error.to_string().contains("cannot read"), "{error}");
     }
 }

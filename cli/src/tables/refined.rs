@@ -7,10 +7,9 @@ use std::io;
 
 use serde_json::{Map, Value, json};
 
+use crate::tables::{Column, object, write_table};
 use knotdock::evaluate::PoseQuality;
-use knotdock::output::tables::fields::number;
 use knotdock::refine::Refined;
-use knotdock::table_text::cells::TableWriter;
 
 /// A refined pose, with its qualities before and after where there is a known complex.
 pub struct RefinedRow {
@@ -22,10 +21,7 @@ pub struct RefinedRow {
     pub quality: Option<[PoseQuality; 2]>,
 }
 
-/// A column: its name, and its value of a row.
-type Column = (&'static str, fn(&RefinedRow) -> Value);
-
-const COLUMNS: [Column; 15] = [
+const COLUMNS: [Column<RefinedRow>; 15] = [
     ("rank", |row| json!(row.rank)),
     ("qw", |row| quaternion(row, 0)),
     ("qx", |row| quaternion(row, 1)),
@@ -40,19 +36,15 @@ const COLUMNS: [Column; 15] = [
     ("clashes_before", |row| json!(row.refined.before.clashes)),
     ("clashes_after", |row| json!(row.refined.after.clashes)),
     ("side_chains_moved", |row| {
-        row.refined
-            .packing
-            .map_or(Value::Null, |packing| json!(packing.moved))
+        json!(row.refined.packing.map(|packing| packing.moved))
     }),
     ("exact", |row| {
-        row.refined
-            .packing
-            .map_or(Value::Null, |packing| json!(packing.exact))
+        json!(row.refined.packing.map(|packing| packing.exact))
     }),
 ];
 
 /// The columns that a known complex adds.
-const OF_NATIVE: [Column; 10] = [
+const OF_NATIVE: [Column<RefinedRow>; 10] = [
     ("irmsd_before", |row| of(row, 0, |q| json!(q.irmsd))),
     ("irmsd_after", |row| of(row, 1, |q| json!(q.irmsd))),
     ("lrmsd_before", |row| of(row, 0, |q| json!(q.lrmsd))),
@@ -76,10 +68,10 @@ fn of(row: &RefinedRow, time: usize, value: fn(&PoseQuality) -> Value) -> Value 
 }
 
 /// The columns of a table.
-fn columns(rows: &[RefinedRow]) -> impl Iterator<Item = &'static Column> {
+fn columns(rows: &[RefinedRow]) -> Vec<Column<RefinedRow>> {
     let has_native = rows.iter().any(|row| row.quality.is_some());
-    let of_native: &[Column] = if has_native { &OF_NATIVE } else { &[] };
-    COLUMNS.iter().chain(of_native)
+    let of_native: &[_] = if has_native { &OF_NATIVE } else { &[] };
+    [&COLUMNS, of_native].concat()
 }
 
 /// Writes the table to a stream.
@@ -87,29 +79,11 @@ fn columns(rows: &[RefinedRow]) -> impl Iterator<Item = &'static Column> {
 /// # Errors
 /// Those of the stream.
 pub fn write_to(stream: &mut dyn io::Write, rows: &[RefinedRow]) -> io::Result<()> {
-    let mut table = TableWriter::new(stream);
-    table.row(columns(rows).map(|(name, _)| *name))?;
-    for row in rows {
-        table.row(columns(rows).map(|(_, value)| field(&value(row))))?;
-    }
-    table.flush()
+    write_table(stream, &columns(rows), rows)
 }
 
 /// The rows as JSON objects with the names of the columns.
 pub fn objects(rows: &[RefinedRow]) -> Vec<Map<String, Value>> {
-    let object = |row: &RefinedRow| {
-        let entries = columns(rows).map(|(name, value)| ((*name).to_owned(), value(row)));
-        entries.collect()
-    };
-    rows.iter().map(object).collect()
-}
-
-/// A value as a field.
-fn field(value: &Value) -> String {
-    match value {
-        Value::Null => String::new(),
-        Value::String(text) => text.clone(),
-        Value::Number(value) if value.is_f64() => value.as_f64().map_or(String::new(), number),
-        other => other.to_string(),
-    }
+    let columns = columns(rows);
+    rows.iter().map(|row| object(&columns, row)).collect()
 }

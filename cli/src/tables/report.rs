@@ -14,16 +14,11 @@ pub const BEST: usize = 10;
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
-    let header = ["rank", "score", "size", "pose score", "z-score"];
-    let mut header: Vec<String> = header.into_iter().map(str::to_owned).collect();
-    header.extend(appended.iter().map(|column| column.name.clone()));
-    let mut lines = vec![header];
-    for index in firsts(ranking).into_iter().take(BEST) {
-        let Some(row) = ranking.get(index) else {
-            continue;
-        };
-        let tenths =
-            |value: Option<f64>| value.map(|value| format!("{value:.1}")).unwrap_or_default();
+    let names = appended.iter().map(|column| format!("|{}", column.name));
+    let header = "rank|score|size|pose score|z-score".to_owned() + &names.collect::<String>();
+    let tenths = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.1}"));
+    let lines = firsts(ranking).into_iter().take(BEST).map(|index| {
+        let row = &ranking[index];
         let size = row.cluster_size.map(|size| size.to_string());
         let mut line = vec![
             (index + 1).to_string(),
@@ -41,36 +36,22 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
                 .all(|field| field.parse::<u64>().is_ok());
             match field.parse::<f64>() {
                 Ok(value) if !is_count => format!("{value:.2}"),
-                Ok(_) => field.to_owned(),
-                Err(_) => field.to_owned(),
+                _ => field.to_owned(),
             }
         }));
-        lines.push(line);
-    }
-    align(&lines)
+        line
+    });
+    text_table(&header, lines)
 }
 
-/// Columns of a table of an ensemble's poses that the terminal shows, where the table has them.
-const OF_ENSEMBLES: [&str; 13] = [
-    "rank",
-    "score",
-    "cluster_size",
-    "receptor_model",
-    "ligand_model",
-    "pose_score",
-    "z_score",
-    "restraints_met",
-    "irmsd",
-    "lrmsd",
-    "fnat",
-    "dockq",
-    "capri",
-];
+/// Columns of a table of an ensemble's poses that the terminal shows, if the table has them.
+const OF_ENSEMBLES: &str = "rank score cluster_size receptor_model ligand_model pose_score z_score restraints_met \
+                            irmsd lrmsd fnat dockq capri";
 
 /// The first of these rows of a table that joins runs, with its main columns.
 pub fn best_rows(table: &PoseTable, rows: Vec<usize>) -> String {
     let has = |name: &&str| table.header.iter().any(|column| column == *name);
-    let columns: Vec<&str> = OF_ENSEMBLES.into_iter().filter(has).collect();
+    let columns: Vec<&str> = OF_ENSEMBLES.split_whitespace().filter(has).collect();
     let heading = |name: &&str| match *name {
         "cluster_size" => "size".to_owned(),
         "receptor_model" => "rec".to_owned(),
@@ -116,6 +97,13 @@ pub fn counted(number: usize, thing: &str) -> String {
         1 => format!("1 {thing}"),
         _ => format!("{number} {thing}s"),
     }
+}
+
+/// A table as text, each column flush right: a `header` of names with `|` between them, and rows of fields.
+pub fn text_table(header: &str, rows: impl IntoIterator<Item = Vec<String>>) -> String {
+    let mut lines = vec![header.split('|').map(str::to_owned).collect()];
+    lines.extend(rows);
+    align(&lines)
 }
 
 /// Lines of fields as text, each column flush right.

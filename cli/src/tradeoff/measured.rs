@@ -10,12 +10,13 @@
 //!   the radius of clusters.
 //! - **Ranks** of near poses, where a known complex is given.
 
+use knotdock_scoring::se3::Pose;
 use serde::Serialize;
 
 use crate::tradeoff::settings::{Refused, Setting};
-use knotdock::dock::outcome::MeasuredError;
-use knotdock::dock::outcome::StageTime;
+use knotdock::dock::outcome::{MeasuredError, StageTime};
 use knotdock::options::DockOptions;
+use knotdock::rank::cluster::RigidBody;
 
 /// Rows whose agreement is measured.
 pub const FIRST: usize = 100;
@@ -112,4 +113,140 @@ pub struct Tradeoff {
     pub radius: f64,
     /// Whether a known complex was given.
     pub with_native: bool,
+}
+
+/// The share of `reference` poses that have one of `found` within `radius`: RMSD of the body's points, in their unit.
+/// 1 where there is nothing to find.
+pub fn agreement(body: &RigidBody, reference: &[Pose], found: &[Pose], radius: f64) -> f64 {
+    if reference.is_empty() {
+        return 1.0;
+    }
+    let found: Vec<_> = found.iter().map(|pose| body.place(pose)).collect();
+    let hits = reference.iter().filter(|pose| {
+        let placed = body.place(pose);
+        found
+            .iter()
+            .any(|other| body.mean_square(&placed, other) <= radius * radius)
+    });
+    hits.count() as f64 / reference.len() as f64
+}
+
+/// Comparison of two scores over the same poses.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Comparison {
+    /// Root mean square of the difference, as a share of the second's largest magnitude.
+    pub rms: f64,
+    /// Pearson's correlation; `None` where either does not vary.
+    pub correlation: Option<f64>,
+}
+
+/// Compares `scores` with `reference`, pose by pose.
+pub fn compare(scores: &[f64], reference: &[f64]) -> Comparison {
+    let count = scores.len().min(reference.len()).max(1) as f64;
+    let pairs = || scores.iter().zip(reference);
+    let largest = reference
+        .iter()
+        .fold(f64::MIN_POSITIVE, |a, b| a.max(b.abs()));
+    let squares: f64 = pairs().map(|(a, b)| ((a - b) / largest).powi(2)).sum();
+    let mean = |values: &mut dyn Iterator<Item = f64>| values.sum::<f64>() / count;
+    let means = [
+        mean(&mut pairs().map(|(a, _)| *a)),
+        mean(&mut pairs().map(|(_, b)| *b)),
+    ];
+    let (mut both, mut first, mut second) = (0.0, 0.0, 0.0);
+    for (a, b) in pairs() {
+        let (a, b) = ((a - means[0]) / largest, (b - means[1]) / largest);
+        both += a * b;
+        first += a * a;
+        second += b * b;
+    }
+    let correlation = both / (first * second).sqrt();
+    Comparison {
+        rms: (squares / count).sqrt(),
+        correlation: correlation
+            .is_finite()
+            .then_some(correlation.clamp(-1.0, 1.0)),
+    }
+}
+
+/// Whether each of some (cost, loss) pairs is on the front: no other pair is at most as large in both and smaller in
+/// one. Pairs without a loss, or with a number that is not finite, are never on it and beat nothing.
+pub fn front(pairs: &[(f64, Option<f64>)]) -> Vec<bool> {
+    let finite = |&(cost, loss): &(f64, Option<f64>)| {
+        let loss = loss.filter(|loss| loss.is_finite())?;
+        cost.is_finite().then_some((cost, loss))
+    };
+    let known: Vec<(f64, f64)> = pairs.iter().filter_map(finite).collect();
+    pairs
+        .iter()
+        .map(|pair| {
+            finite(pair).is_some_and(|(cost, loss)| {
+                !known.iter().any(|&(other_cost, other_loss)| {
+                    other_cost <= cost
+                        && other_loss <= loss
+                        && (other_cost < cost || other_loss < loss)
+                })
+            })
+        })
+        .collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn agreement_is_the_share_that_has_a_neighbour() {
+        let body = RigidBody::new(&[[0.0; 3], [1.0, 0.0, 0.0]]);
+        let at = |x: f64| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
+        let reference = [at(0.0), at(10.0), at(20.0), at(30.0)];
+        let found = [at(1.0), at(12.5), at(20.0)];
+        assert_eq!(agreement(&body, &reference, &found, 2.0), 0.5);
+        assert_eq!(agreement(&body, &reference, &found, 2.6), 0.75);
+        assert_eq!(agreement(&body, &reference, &reference, 0.0), 1.0);
+        assert_eq!(agreement(&body, &reference, &[], 5.0), 0.0);
+        assert_eq!(agreement(&body, &[], &[], 5.0), 1.0);
+    }
+
+    #[test]
+    fn a_scaled_score_correlates_fully_and_differs_all_the_same() {
+        let compared = compare(&[2.0, 4.0, 8.0], &[1.0, 2.0, 4.0]);
+        assert!((compared.correlation.unwrap() - 1.0).abs() < 1e-12);
+        assert!((compared.rms - (21.0f64 / 3.0).sqrt() / 4.0).abs() < 1e-12);
+        assert_eq!(compare(&[1.0, 1.0], &[1.0, 2.0]).correlation, None);
+        assert_eq!(compare(&[3.0, 1.0], &[3.0, 1.0]).rms, 0.0);
+    }
+
+    #[test]
+    fn what_is_beaten_is_off_and_what_is_unknown_too() {
+        let pairs = [
+            (1.0, Some(9.0)),
+            (2.0, Some(9.0)),
+            (2.0, Some(3.0)),
+            (3.0, Some(1.0)),
+            (0.5, None),
+            (0.5, Some(f64::NAN)),
+        ];
+        assert_eq!(front(&pairs), [true, false, true, true, false, false]);
+        // Equals do not beat each other.
+        assert_eq!(front(&[(1.0, Some(1.0)); 2]), [true, true]);
+    }
+
+    proptest! {
+        /// Nothing beats a pair on the front, and every pair off it is beaten by one on it.
+        #[test]
+        fn the_front_is_what_nothing_beats(pairs in prop::collection::vec((0..9, 0..9), 1..20)) {
+            let pairs: Vec<(f64, Option<f64>)> =
+                pairs.into_iter().map(|(cost, loss)| (f64::from(cost), Some(f64::from(loss)))).collect();
+            let on = front(&pairs);
+            let beats = |a: &(f64, Option<f64>), b: &(f64, Option<f64>)| a.0 <= b.0 && a.1 <= b.1 && a != b;
+            for (pair, on_front) in pairs.iter().zip(&on) {
+                let beaten = pairs.iter().any(|other| beats(other, pair));
+                prop_assert_eq!(*on_front, !beaten);
+                let by_front = pairs.iter().zip(&on).any(|(other, on)| *on && beats(other, pair));
+                prop_assert_eq!(beaten, by_front);
+            }
+        }
+    }
 }

@@ -7,10 +7,7 @@
 //! - Sampling, planning and searching are those of `knotdock dock`: nothing is modelled that can be run.
 
 pub mod advice;
-mod agreement;
-mod change;
 pub mod choice;
-mod front;
 pub mod measured;
 pub mod plot;
 pub mod settings;

@@ -1,9 +1,10 @@
 //! The picture of a sweep: error, agreement and, with a known complex, ranks against time, on logarithmic axes, the
 //! fronts marked.
 
-use crate::plot::chart::{Axis, ChartError, Colour, Panel, Series, Style, draw};
+use crate::plot::chart::{Axis, Colour, Panel, Series, Style, draw};
 use crate::tradeoff::measured::{FIRST, Measured, Tradeoff};
 use crate::tradeoff::settings::Parameter;
+use knotdock_structures::Error;
 
 /// Where nothing of the reference is missed: half a row, which a logarithm can show.
 const NONE_MISSED: f64 = 0.5;
@@ -54,8 +55,8 @@ impl Point<'_> {
 /// Draws a sweep as SVG.
 ///
 /// # Errors
-/// [`ChartError`] where the chart cannot be drawn.
-pub fn plot(tradeoff: &Tradeoff) -> Result<String, ChartError> {
+/// [`Error`] where the chart cannot be drawn.
+pub fn plot(tradeoff: &Tradeoff) -> Result<String, Error> {
     let points = |value: &dyn Fn(&Measured) -> Option<f64>, front: fn(&Measured) -> bool| {
         let runs = tradeoff.measured.iter();
         runs.filter_map(|run| {

@@ -4,9 +4,9 @@
 use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
 
-use crate::tradeoff::agreement::{agreement, compare};
-use crate::tradeoff::front::front;
-use crate::tradeoff::measured::{FIRST, Measured, NativeRanks, Tradeoff};
+use crate::tradeoff::measured::{
+    FIRST, Measured, NativeRanks, Tradeoff, agreement, compare, front,
+};
 use crate::tradeoff::settings::{Parameter, Planned, Refused, Setting, settings};
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::{Pair, PreparedPair, Preparer};

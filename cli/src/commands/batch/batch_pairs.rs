@@ -3,12 +3,11 @@
 use std::collections::HashMap;
 use std::path::Path;
 
-use crate::messages::suggestions::first_paragraph;
 use crate::shards::record::RECORD;
 use crate::shards::{ATTEMPTS, POSES, SHARDS, Shard};
 use crate::tables::batch_results::RESULTS;
 use crate::tables::pair_table::{PairRow, read_pairs};
-use clap::error::ErrorKind;
+use clap::error::{ContextKind, ErrorKind};
 use clap::{CommandFactory, FromArgMatches, Parser, ValueHint};
 use knotdock::options::definition::Form;
 use knotdock::options::option_named;
@@ -22,7 +21,7 @@ use crate::arguments::program::with_negative_numbers;
 use crate::commands::dock::{Dock, PLACE, refusing_recorded};
 use crate::inputs::bodies::spec_of;
 use crate::inputs::molecules::label;
-use crate::messages::suggestions;
+use crate::messages::suggestions::{first_paragraph, suggested};
 use knotdock_structures::Error;
 
 /// One pair's command line.
@@ -43,17 +42,17 @@ pub struct Pair {
     pub row: PairRow,
     /// Its command line.
     pub dock: Dock,
-    /// What it is expected to cost beside others: the bytes of its files.
+    /// Expected cost relative to others: the bytes of its files.
     pub cost: f64,
 }
 
-/// The pairs of a table that a shard has.
+/// The pairs of a table.
 pub struct Pairs {
-    /// They, in the order of the table.
+    /// The pairs of the shard, in the order of the table.
     pub own: Vec<Pair>,
-    /// How many there are in all.
+    /// Rows of the table.
     pub total: usize,
-    /// SHA-256 of what all rows say.
+    /// SHA-256 of all rows.
     pub sha256: String,
 }
 
@@ -72,56 +71,32 @@ pub fn pairs(
     let total = rows.len();
     let sums: String = rows.iter().map(PairRow::checksum).collect();
     let pairs = (1..).zip(rows).map(|(index, row)| {
-            let wrong = |message: String, remedy: &str| {
-                Error::input(message)
-                    .at(table)
-                    .on_line(Some(row.line))
-                    .help(remedy)
-            };
-            let name = match row.name.as_str() {
-                "" => format!("{}_{}", part(&row.receptor)?, partner(&row, symmetry)?),
-                name => name.to_owned(),
-            };
-            if !is_name(&name) {
-                return Err(wrong(
-                    format!("'{name}' cannot be the name of a directory"),
-                    "name the pair with letters, digits, `.`, `_` and `-`; a letter or a digit comes first",
-                ));
-            }
-            if OF_BATCH.contains(&name.to_lowercase().as_str()) {
-                return Err(wrong(
-                    format!("a file of the batch is called {name}, so no pair can be"),
-                    "give the pair another name in a column `name`",
-                ));
-            }
-            // Letters of either case are one where file systems think so.
-            if let Some(line) = names.insert(name.to_lowercase(), row.line) {
-                return Err(wrong(
-                    format!("the pair on line {line} has the same name, {name}"),
-                    "give each pair a name of its own in a column `name`",
-                ));
-            }
-            if !shard.has(index) {
-                return Ok(None);
-            }
-            let dock = command(&row, &directory.join(&name), folder, options);
-            let dock = dock.map_err(|(message, suggested)| {
-                const COLUMNS: &str = "name columns as the options that `knotdock dock --help` lists, and give each option once: \
-                                       in a column or after --";
-                match suggested {
-                    Some(text) => wrong(message, &format!("{text}; {COLUMNS}")),
-                    None => wrong(message, COLUMNS),
-                }
-            })?;
-            let cost = cost(&row, folder);
-            Ok(Some(Pair {
-                index,
-                name,
-                row,
-                dock,
-                cost,
-            }))
-        });
+        let refused = |error: Error| error.at(table).on_line(Some(row.line));
+        let name = match row.name.as_str() {
+            "" => format!("{}_{}", part(&row.receptor)?, partner(&row, symmetry)?),
+            name => name.to_owned(),
+        };
+        check_name(&name).map_err(refused)?;
+        // Some file systems do not distinguish upper and lower case.
+        if let Some(line) = names.insert(name.to_lowercase(), row.line) {
+            let message = format!("the pair on line {line} has the same name, {name}");
+            let error =
+                Error::input(message).help("give each pair its own name in a column `name`");
+            return Err(refused(error));
+        }
+        if !shard.has(index) {
+            return Ok(None);
+        }
+        let dock = command(&row, &directory.join(&name), folder, options).map_err(refused)?;
+        let cost = cost(&row, folder);
+        Ok(Some(Pair {
+            index,
+            name,
+            row,
+            dock,
+            cost,
+        }))
+    });
     let pairs: Result<Vec<Pair>, Error> = pairs.filter_map(Result::transpose).collect();
     Ok(Pairs {
         own: pairs?,
@@ -130,8 +105,23 @@ pub fn pairs(
     })
 }
 
-/// Stand for a row's files where only the options are looked at.
-const FILLED_IN: [&str; 2] = ["knotdock-row-receptor", "knotdock-row-ligand"];
+/// Refuses names that cannot be those of a directory, or are those of the batch's files and folders.
+fn check_name(name: &str) -> Result<(), Error> {
+    let is_plain = |c: char| c.is_alphanumeric() || "._-".contains(c);
+    if !name.starts_with(char::is_alphanumeric) || !name.chars().all(is_plain) {
+        return Err(Error::input(format!("'{name}' cannot be the name of a directory")).help(
+            "name the pair with letters, digits, `.`, `_` and `-`; a letter or a digit comes first",
+        ));
+    }
+    if [RECORD, RESULTS, POSES, ATTEMPTS, REPORT, SHARDS].contains(&name.to_lowercase().as_str()) {
+        let message = format!("a file of the batch is called {name}, so no pair can be");
+        return Err(Error::input(message).help("give the pair another name in a column `name`"));
+    }
+    Ok(())
+}
+
+/// Files in place of a row's, when the options after `--` are checked alone.
+const PLACEHOLDERS: [&str; 2] = ["knotdock-row-receptor", "knotdock-row-ligand"];
 
 fn pair_command() -> clap::Command {
     refusing_recorded(PairCommand::command())
@@ -151,78 +141,60 @@ fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::E
     PairCommand::from_arg_matches(&matches)
 }
 
-/// Refuses options after `--` that no pair's command line could have: a row of the table is not at fault then.
+/// Refuses options after `--` that no pair's command line could have, so that no row of the table is blamed.
 fn check_options(options: &[String]) -> Result<(), Error> {
-    let remedy = "after -- come options of `knotdock dock`, which `knotdock dock --help` lists";
-    let of_no_row = ["knotdock dock"].into_iter().map(str::to_owned);
-    let files = ["--"].iter().chain(&FILLED_IN).map(ToString::to_string);
-    let words = of_no_row.chain(options.iter().cloned()).chain(files);
-    match parse(words) {
-        Ok(command) if command.dock.names_its_run() => Err(Error::input(
-            "--output cannot stand after --: the batch chooses the directories of its runs",
-        )
-        .help("name the batch's own directory with -o before --")),
-        Err(error)
-            if matches!(
-                error.kind(),
-                ErrorKind::DisplayHelp | ErrorKind::DisplayVersion
-            ) =>
-        {
-            Err(Error::input("--help cannot stand after --").help(remedy))
+    const REMEDY: &str =
+        "after -- come options of `knotdock dock`, which `knotdock dock --help` lists";
+    let files = ["--"].iter().chain(&PLACEHOLDERS).map(ToString::to_string);
+    let program = std::iter::once("knotdock dock".to_owned());
+    let error = match parse(program.chain(options.iter().cloned()).chain(files)) {
+        Ok(command) if command.dock.names_its_run() => {
+            let message =
+                "--output cannot come after --: the batch chooses the directories of its runs";
+            return Err(Error::input(message).help("name the batch's directory with -o before --"));
         }
-        Err(error)
-            if error.kind() == ErrorKind::UnknownArgument
-                && FILLED_IN
-                    .iter()
-                    .any(|file| first_paragraph(&error).contains(*file)) =>
-        {
-            Err(Error::input("files cannot stand after --: the table names them").help(remedy))
+        Ok(command) => return command.dock.check_config(),
+        Err(error) => error,
+    };
+    let names = |argument: &str| {
+        let named = [ContextKind::InvalidArg, ContextKind::PriorArg];
+        let mut named = named.into_iter().filter_map(|kind| error.get(kind));
+        named.any(|named| named.to_string().contains(argument))
+    };
+    let message = match error.kind() {
+        ErrorKind::DisplayHelp | ErrorKind::DisplayVersion => {
+            "--help cannot come after --".to_owned()
         }
-        // In conflict with the files are --rerun, which no row can do with, and --symmetry, which a row without a
-        // ligand asks for.
-        Err(error) if first_paragraph(&error).contains("--rerun") => Err(Error::input(
-            "--rerun cannot stand after --: the table says what is docked",
-        )
-        .help(remedy)),
-        Err(error)
-            if error.kind() == ErrorKind::ArgumentConflict
-                && !first_paragraph(&error).contains("LIGAND") =>
-        {
-            Err(Error::input(format!("after --: {}", first_paragraph(&error))).help(remedy))
+        ErrorKind::UnknownArgument if PLACEHOLDERS.into_iter().any(names) => {
+            "files cannot come after --: the table names them".to_owned()
         }
-        Err(error)
-            if matches!(
-                error.kind(),
-                ErrorKind::UnknownArgument
-                    | ErrorKind::InvalidValue
-                    | ErrorKind::ValueValidation
-                    | ErrorKind::NoEquals
-                    | ErrorKind::TooManyValues
-                    | ErrorKind::TooFewValues
-            ) =>
-        {
-            let suggested = suggestions::suggested(&error);
-            let remedy =
-                suggested.map_or_else(|| remedy.to_owned(), |text| format!("{text}; {remedy}"));
-            Err(Error::input(format!("after --: {}", first_paragraph(&error))).help(remedy))
+        _ if names("--rerun") => {
+            "--rerun cannot come after --: the table lists the pairs to dock".to_owned()
         }
-        Ok(command) => command.dock.check_config(),
-        // What is missing or in conflict here may be otherwise beside a row's own options.
-        _ => Ok(()),
-    }
+        // Rows without a ligand need --symmetry, which conflicts with a ligand.
+        ErrorKind::ArgumentConflict if names("LIGAND") => return Ok(()),
+        ErrorKind::ArgumentConflict
+        | ErrorKind::UnknownArgument
+        | ErrorKind::InvalidValue
+        | ErrorKind::ValueValidation
+        | ErrorKind::NoEquals
+        | ErrorKind::TooManyValues
+        | ErrorKind::TooFewValues => format!("after --: {}", first_paragraph(&error)),
+        // The options of a row may add what is missing.
+        _ => return Ok(()),
+    };
+    let suggested = suggested(&error).map_or_else(String::new, |text| text + "; ");
+    Err(Error::input(message).help(format!("{suggested}{REMEDY}")))
 }
 
-/// The command line of a pair; an error comes with a remedy if one is known.
-fn command(
-    row: &PairRow,
-    run: &Path,
-    folder: &Path,
-    options: &[String],
-) -> Result<Dock, (String, Option<String>)> {
+/// The command line of a pair.
+fn command(row: &PairRow, run: &Path, folder: &Path, options: &[String]) -> Result<Dock, Error> {
+    const COLUMNS: &str = "name columns as the options that `knotdock dock --help` lists, and give each option once: \
+                           in a column or after --";
     let mut words = vec!["knotdock dock".to_owned()];
     for (column, value) in &row.options {
         if PLACE.contains(&column.as_str()) {
-            return Err((format!("a column cannot be `{column}`"), None));
+            return Err(Error::input(format!("a column cannot be `{column}`")).help(COLUMNS));
         }
         let of_files = option_named(column).filter(|option| option.is_of_files());
         let is_file = match of_files {
@@ -243,13 +215,13 @@ fn command(
     words.extend(options.iter().cloned());
     words.push("--".to_owned());
     let files = [&row.receptor, &row.ligand].into_iter();
-    words.extend(
-        files
-            .filter(|file| !file.is_empty())
-            .map(|file| at(folder, file)),
-    );
-    let wrong = |error: clap::Error| (first_paragraph(&error), suggestions::suggested(&error));
-    Ok(parse(words).map_err(wrong)?.dock)
+    let files = files.filter(|file| !file.is_empty());
+    words.extend(files.map(|file| at(folder, file)));
+    let command = parse(words).map_err(|error| {
+        let suggested = suggested(&error).map_or_else(String::new, |text| text + "; ");
+        Error::input(first_paragraph(&error)).help(format!("{suggested}{COLUMNS}"))
+    })?;
+    Ok(command.dock)
 }
 
 /// Bytes of a pair's files, packed ones as they may be unpacked: the time of a run grows about as its atoms.
@@ -269,7 +241,7 @@ fn cost(row: &PairRow, folder: &Path) -> f64 {
 /// Bytes of a structure file for each byte of it that is packed by gzip.
 const PACKED: f64 = 4.0;
 
-/// A file of the table as seen from here, its chains behind it.
+/// A file of the table from the current folder, with its chains.
 fn at(folder: &Path, file: &str) -> String {
     let path = plain_path(&folder.join(file));
     path.to_string_lossy().into_owned()
@@ -281,7 +253,7 @@ fn part(file: &str) -> Result<String, Error> {
     Ok(label(&spec.path, spec.chains.as_deref()))
 }
 
-/// What the receptor is docked to, for the pair's name: the ligand, or into which ring.
+/// The partner of the receptor in the pair's name: the ligand, or the symmetry of the ring.
 fn partner(row: &PairRow, of_all: Option<&str>) -> Result<String, Error> {
     let own = row.options.iter().find(|(name, _)| name == "symmetry");
     match own.map(|(_, symmetry)| symmetry.as_str()).or(of_all) {
@@ -300,14 +272,3 @@ fn symmetry(options: &[String]) -> Option<&str> {
         value => value.strip_prefix('='),
     }
 }
-
-/// Whether a pair may be called so.
-fn is_name(name: &str) -> bool {
-    name.starts_with(char::is_alphanumeric)
-        && name
-            .chars()
-            .all(|c| c.is_alphanumeric() || "._-".contains(c))
-}
-
-/// Names of a batch's own files and folders.
-const OF_BATCH: [&str; 6] = [RECORD, RESULTS, POSES, ATTEMPTS, REPORT, SHARDS];

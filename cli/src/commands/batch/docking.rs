@@ -2,6 +2,8 @@
 
 use knotdock::output::files::file_error;
 use std::path::PathBuf;
+use std::sync::mpsc::channel;
+use std::thread::{Builder, scope};
 
 use crate::shards::part::Part;
 use crate::shards::record::{BatchRecord, Keep};
@@ -9,34 +11,32 @@ use crate::shards::scratch::Scratch;
 use crate::shards::{POSES, SHARDS};
 use crate::tables::batch_results::{PairResult, RESULTS};
 use crate::tables::report::counted;
+use knotdock::dock::shared_process::share_process;
 use knotdock::output::files::whole_file::is_link;
 use serde_json::{Value, json};
 
-use crate::commands::batch::ExitCode;
 use crate::commands::batch::batch_pairs::Pair;
-use crate::commands::batch::crew::{Job, Watch, dock_all};
-use crate::commands::batch::limits::Limits;
-use crate::commands::batch::pair::{DockedPair, PairWork};
-use crate::commands::batch::plan::plan;
+use crate::commands::batch::pair::{DockedPair, Limits, PairWork};
+use crate::commands::batch::schedule::{Slot, schedule};
 use crate::commands::report::write_listed;
 use crate::messages::console::Console;
 use crate::messages::leftovers::warn_leftovers;
 use knotdock_structures::Error;
 
-/// So often a pair may be under way when its process ends before it is given up.
+/// Times that the process may end during a pair before the pair is given up.
 const KILLS: usize = 10;
 
-/// What is done with the pairs of a batch or a shard.
+/// A batch or a shard to dock.
 pub struct BatchRun {
     /// The directory of the batch.
     pub directory: PathBuf,
-    /// Where the growing files are while pairs are docked; in their place where none is given.
+    /// Where the growing files are while pairs are docked; their final folder if `None`.
     pub scratch: Option<PathBuf>,
-    /// Which pairs, which options, and what is kept.
+    /// The pairs, their options, and the parts that are kept.
     pub record: BatchRecord,
-    /// Threads, where they are given.
+    /// Threads, if they are given.
     pub threads: Option<usize>,
-    /// What a pair may take.
+    /// Time and attempts of a pair.
     pub limits: Limits,
     /// Whether pairs that failed are docked again.
     pub retry_failed: bool,
@@ -45,8 +45,9 @@ pub struct BatchRun {
 }
 
 impl BatchRun {
-    /// Docks those of the pairs that are not done; the exit code.
-    pub fn dock(self, pairs: Vec<Pair>, console: Console) -> Result<ExitCode, Error> {
+    /// Docks those of the pairs that are not done; the exit code: 0 if all are done, 2 if all failures are those of their
+    /// inputs, else 1.
+    pub fn dock(self, pairs: Vec<Pair>, console: Console) -> Result<u8, Error> {
         let place = self.place()?;
         let (_lock, leftovers) = self.record.take(&place)?;
         warn_leftovers(&leftovers, console);
@@ -57,23 +58,23 @@ impl BatchRun {
             .as_ref()
             .map_or(place.as_path(), Scratch::folder)
             .to_owned();
-        let mut watch = ResultFiles {
+        let mut progress = BatchProgress {
             part: Part::open(&folder, &self.record)?,
             pairs: Vec::new(),
             entries: vec![Value::Null; pairs.len()],
-            code: ExitCode::default(),
+            code: 0,
             console,
         };
-        let docked = self.dock_all(pairs, &mut watch);
-        let ResultFiles {
+        let docked = self.dock_all(pairs, &mut progress);
+        let BatchProgress {
             part,
             entries,
             code,
             ..
-        } = watch;
+        } = progress;
         let [done, failed] = part.counts();
-        let docked = docked.and_then(|()| Ok(part.finish(&self.record)?));
-        // What is done is not lost with this machine, though not all is.
+        let docked = docked.and_then(|()| part.finish(&self.record));
+        // A batch that ended early keeps its pairs too.
         scratch.map_or(Ok(()), Scratch::copy_out)?;
         docked?;
         let is_whole = !self.is_shard && self.record.keep == Keep::All;
@@ -113,7 +114,8 @@ impl BatchRun {
                 "poses": poses,
             }),
         })?;
-        Ok(code.of_failed(failed))
+        // Pairs may have failed in earlier calls alone.
+        Ok(if code == 0 && failed > 0 { 2 } else { code })
     }
 
     /// The folder of the batch's or the shard's files.
@@ -124,7 +126,7 @@ impl BatchRun {
         let shards = self.directory.join(SHARDS);
         for folder in [&self.directory, &shards] {
             if is_link(folder) {
-                return Err(file_error::link(folder).into());
+                return Err(file_error::link(folder));
             }
         }
         let mut entries = std::fs::read_dir(&self.directory).into_iter().flatten();
@@ -137,17 +139,17 @@ impl BatchRun {
         Ok(shards.join(self.record.shard.folder()))
     }
 
-    /// Docks the pairs that wait.
-    fn dock_all(&self, pairs: Vec<Pair>, watch: &mut ResultFiles) -> Result<(), Error> {
-        let console = watch.console;
-        let (lost, count) = (watch.part.lost, pairs.len());
+    /// Docks the pairs that are not done.
+    fn dock_all(&self, pairs: Vec<Pair>, progress: &mut BatchProgress) -> Result<(), Error> {
+        let console = progress.console;
+        let (lost, count) = (progress.part.lost, pairs.len());
         if lost > 0 {
             console.warn(format!(
                 "{} had incomplete poses and are docked again",
                 counted(lost, "pair")
             ));
         }
-        let (fresh, stopped) = self.waiting(pairs, &mut watch.part)?;
+        let (fresh, stopped) = self.waiting(pairs, &mut progress.part)?;
         let waiting = fresh.len() + stopped.len();
         if waiting < count {
             console.say(format!(
@@ -159,25 +161,20 @@ impl BatchRun {
         // A pair that was under way when the process ended may end it again: it comes by itself, after all others.
         let alone = stopped.into_iter().map(|pair| vec![pair]);
         for pairs in std::iter::once(fresh).chain(alone) {
-            watch.pairs = pairs
-                .iter()
-                .map(|pair| (pair.index, result(pair)))
-                .collect();
-            let (turns, threads) = plan(&pairs, self.threads);
+            let results = pairs.iter().map(|pair| (pair.index, result(pair)));
+            progress.pairs = results.collect();
+            let (slots, threads) = schedule(&pairs, self.threads);
             let mut left: Vec<Option<Pair>> = pairs.into_iter().map(Some).collect();
-            let jobs = turns.into_iter().filter_map(|turn| {
-                let work = self.work(left[turn.pair].take()?);
-                Some(Job { turn, work })
-            });
-            let jobs: Vec<Job<PairWork>> = jobs.collect();
-            let dock = |work: PairWork, threads| work.dock(threads, console);
-            dock_all(jobs, threads, dock, watch)?;
+            let work = slots
+                .into_iter()
+                .filter_map(|slot| Some((slot, self.work(left[slot.pair].take()?))));
+            progress.dock_all(work.collect(), threads)?;
         }
         Ok(())
     }
 
     /// The pairs that have to be docked: those that were never started, and those that were under way when the process
-    /// ended. What ended the process too often is noted as failed. Whole runs are all looked at.
+    /// ended. Pairs that ended the process too often are noted as failed. With whole runs, every pair is checked.
     fn waiting(&self, pairs: Vec<Pair>, part: &mut Part) -> Result<(Vec<Pair>, Vec<Pair>), Error> {
         let (mut fresh, mut stopped) = (Vec::new(), Vec::new());
         let is_again = |is_done: bool| match self.record.keep {
@@ -189,17 +186,11 @@ impl BatchRun {
                 (Some(is_done), _) if !is_again(is_done) => {}
                 (Some(_), _) | (None, 0) => fresh.push(pair),
                 (None, kills) if kills >= KILLS => {
-                    let failure = format!(
+                    let mut failed = result(&pair);
+                    failed.outcome = Err(format!(
                         "the program ended {kills} times while this pair was docked, perhaps for lack of memory"
-                    );
-                    let outcome = Err(failure);
-                    part.add(
-                        &PairResult {
-                            outcome,
-                            ..result(&pair)
-                        },
-                        None,
-                    )?;
+                    ));
+                    part.add(&failed, None)?;
                 }
                 (None, _) => stopped.push(pair),
             }
@@ -230,34 +221,92 @@ fn result(pair: &Pair) -> PairResult {
     }
 }
 
-/// The files of the batch, to which each pair is added.
-struct ResultFiles<'a> {
+/// The batch while its pairs are docked.
+struct BatchProgress<'a> {
+    /// The files, to which each pair is added.
     part: Part,
-    /// Row in the table and result of the pairs that are docked now, by their turns.
+    /// Row in the table and result of the pairs that are docked now, by their slots.
     pairs: Vec<(usize, PairResult)>,
-    /// What is said of each pair in JSON.
+    /// The JSON entry of each pair.
     entries: Vec<Value>,
-    code: ExitCode,
+    /// The exit code of the pairs so far.
+    code: u8,
     console: Console<'a>,
 }
 
-impl Watch<DockedPair> for ResultFiles<'_> {
-    fn start(&mut self, place: usize) -> Result<(), Error> {
-        self.console.go_on()?;
-        Ok(self.part.start(&self.pairs[place].1.name)?)
+impl BatchProgress<'_> {
+    /// Docks pairs in their order, as many at once as `threads` suffice for. No pair is started after a failure to
+    /// write.
+    fn dock_all(&mut self, work: Vec<(Slot, PairWork)>, threads: usize) -> Result<(), Error> {
+        let console = self.console;
+        let (sender, receiver) = channel();
+        let mut waiting = work.into_iter().peekable();
+        let (mut free, mut running) = (threads, 0usize);
+        scope(|scope| {
+            let mut failed = None;
+            loop {
+                let fits = |(slot, _): &(Slot, PairWork)| {
+                    let has_room = !slot.is_alone && slot.threads <= free;
+                    failed.is_none() && (running == 0 || has_room)
+                };
+                if let Some((slot, work)) = waiting.next_if(fits) {
+                    failed = self.start(slot.pair).err();
+                    if failed.is_some() {
+                        continue;
+                    }
+                    if slot.is_alone {
+                        let docked = work.dock(slot.threads, console);
+                        failed = self.add(slot.pair, docked).err();
+                        continue;
+                    }
+                    share_process();
+                    let sender = sender.clone();
+                    let work = move || {
+                        // The receiver outlives the threads.
+                        let _ = sender.send((slot, work.dock(slot.threads, console)));
+                    };
+                    if let Err(error) = Builder::new().spawn_scoped(scope, work) {
+                        let message = format!("the system could not start a thread: {error}");
+                        failed = Some(Error::machine(message).help("use fewer threads (-j)"));
+                        continue;
+                    }
+                    free = free.saturating_sub(slot.threads);
+                    running += 1;
+                } else if running > 0 {
+                    // The sender is held here, so that receiving cannot fail.
+                    if let Ok((slot, docked)) = receiver.recv() {
+                        free += slot.threads;
+                        running -= 1;
+                        let next = self.add(slot.pair, docked).err();
+                        failed = failed.or(next);
+                    }
+                } else {
+                    return failed.map_or(Ok(()), Err);
+                }
+            }
+        })
     }
 
-    fn done(&mut self, place: usize, pair: DockedPair) -> Result<(), Error> {
-        // What was interrupted has not failed.
+    /// Notes that a pair is about to be docked.
+    fn start(&mut self, place: usize) -> Result<(), Error> {
+        self.console.go_on()?;
+        self.part.start(&self.pairs[place].1.name)
+    }
+
+    /// Adds a docked pair to the files.
+    fn add(&mut self, place: usize, pair: DockedPair) -> Result<(), Error> {
+        // A pair that was interrupted has not failed.
         self.console.go_on()?;
         if let Err(failure) = &pair.outcome {
-            self.code.add(failure);
+            self.code = match (self.code, failure.exit_code()) {
+                (0 | 2, 2) => 2,
+                _ => 1,
+            };
         }
         let (row, result) = &mut self.pairs[place];
-        let outcome = pair.outcome.map_err(|failure| failure.in_one_line());
-        result.outcome = outcome;
+        result.outcome = pair.outcome.map_err(|failure| failure.in_one_line());
         self.part.add(result, pair.poses.as_ref())?;
-        // What is in the files is not held.
+        // The files have it now; memory does not keep it.
         result.outcome = Err(String::new());
         if let Some(entry) = self.entries.get_mut(*row - 1) {
             *entry = pair.entry;

@@ -1,11 +1,8 @@
 //! `knotdock batch`: many pairs in one call, and one table of what came of them.
 
 mod batch_pairs;
-mod crew;
 mod docking;
-mod limits;
 mod pair;
-mod plan;
 mod schedule;
 
 use std::path::PathBuf;
@@ -19,7 +16,7 @@ use knotdock::options::values::{AT_LEAST_ONE, AllOr, all_or_at_least_one, in_ran
 use crate::arguments::program::is_of_program;
 use crate::commands::batch::batch_pairs::{Pairs, pairs};
 use crate::commands::batch::docking::BatchRun;
-use crate::commands::batch::limits::Limits;
+use crate::commands::batch::pair::Limits;
 use crate::inputs::recent_molecules::keep_recent;
 use crate::messages::console::Console;
 use knotdock_structures::Error;
@@ -79,11 +76,9 @@ impl Batch {
         });
         if let Some(word) = self.options.iter().find(|word| is_of_program(word)) {
             return Err(Error::input(format!(
-                "{word} stands after --, where the options of each pair stand"
+                "{word} applies to the whole batch, and is given after --"
             ))
-            .help(format!(
-                "give {word} before --: it is an option of the whole batch"
-            )));
+            .help(format!("put {word} before `--`")));
         }
         let is_plain = self.shard.is_none() && self.keep == Keep::All;
         if is_plain && (self.scratch.is_some() || self.retry_failed) {
@@ -116,9 +111,8 @@ impl Batch {
             .iter()
             .map(|pair| (pair.name.clone(), pair.row.checksum()));
         let names = names.collect();
-        let kept = (self.keep, rows.0);
         let run = BatchRun {
-            record: BatchRecord::new(shard, (total, sha256), self.options, kept, names),
+            record: BatchRecord::new(shard, total, sha256, self.options, self.keep, rows.0, names),
             directory,
             scratch: self.scratch,
             threads: self.threads,
@@ -127,31 +121,9 @@ impl Batch {
             is_shard: self.shard.is_some(),
         };
         let code = run.dock(own, console)?;
-        Ok(if self.failures_ok { 0 } else { code.0 })
+        Ok(if self.failures_ok { 0 } else { code })
     }
 }
 
 /// Rows of a pair that are kept where their number is not given: some 35 kB.
 const ROWS: usize = 200;
-
-/// The exit code of a batch.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct ExitCode(u8);
-
-impl ExitCode {
-    /// Takes account of a pair that failed.
-    pub fn add(&mut self, failure: &Error) {
-        self.0 = match (self.0, failure.exit_code()) {
-            (0 | 2, 2) => 2,
-            _ => 1,
-        };
-    }
-
-    /// The code where so many pairs of this call and earlier ones failed.
-    pub fn of_failed(self, count: usize) -> Self {
-        match (self.0, count) {
-            (0, 1..) => Self(2),
-            _ => self,
-        }
-    }
-}

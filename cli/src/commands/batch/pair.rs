@@ -1,4 +1,4 @@
-//! One pair of a batch: docked unless its run is there, and reported.
+//! One pair of a batch: docked unless its run is there, within a time and with retries, and reported.
 
 use crate::messages::failure;
 use std::panic::{AssertUnwindSafe, catch_unwind};
@@ -11,17 +11,63 @@ use crate::shards::record::Keep;
 use crate::tables::batch_results::RunSummary;
 use serde_json::{Value, json};
 
-use crate::commands::batch::limits::{Limits, PairTime};
 use crate::commands::dock::{Dock, Prepared};
 use crate::docking::{Docking, held_by_another};
 use crate::messages::console::Console;
-use crate::messages::run_summary::summary_line;
+use crate::messages::listener::Listener;
+use clap::Args;
+use knotdock::options::values::duration;
+use knotdock::progress::Ended;
 use knotdock_structures::Error;
 
 /// Seconds before a pair is docked again.
 const PAUSE: Duration = Duration::from_secs(1);
 
-/// A pair and what is wanted of it.
+/// How long and how often a pair is docked.
+#[derive(Args, Clone, Copy, Debug)]
+pub struct Limits {
+    /// Time for each pair, such as 10min: one that takes longer fails. `-- --memory 4G` limits its memory.
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    pub time_limit: Option<f64>,
+    /// How often a pair is docked again that failed by no fault of its input, such as by a disk that did not answer.
+    #[arg(long, value_name = "COUNT", default_value_t = 2)]
+    pub retries: usize,
+}
+
+/// The time of one pair, and the listener that may end it too.
+#[derive(Debug)]
+pub struct PairTime<'a> {
+    limit: Option<(Instant, f64)>,
+    outer: Option<&'a dyn Listener>,
+}
+
+impl<'a> PairTime<'a> {
+    /// The time of a pair that begins now.
+    pub fn new(limits: Limits, console: Console<'a>) -> Self {
+        let limit = limits.time_limit.and_then(|seconds| {
+            let limit = Duration::try_from_secs_f64(seconds).ok()?;
+            Some((Instant::now().checked_add(limit)?, seconds))
+        });
+        Self {
+            limit,
+            outer: console.listener,
+        }
+    }
+}
+
+impl Listener for PairTime<'_> {
+    fn go_on(&self) -> Result<(), Ended> {
+        if let Some(outer) = self.outer {
+            outer.go_on()?;
+        }
+        match self.limit {
+            Some((end, seconds)) if Instant::now() >= end => Err(Ended::TimeLimit(seconds)),
+            _ => Ok(()),
+        }
+    }
+}
+
+/// A pair, and how it is docked.
 pub struct PairWork {
     /// Its command line.
     pub dock: Dock,
@@ -31,26 +77,32 @@ pub struct PairWork {
     pub directory: PathBuf,
     /// How its line of the report begins.
     pub head: String,
-    /// What is kept of it.
+    /// The parts that are kept of it.
     pub keep: Keep,
     /// Rows of its table that are kept.
     pub rows: usize,
-    /// What it may take.
+    /// Its time and attempts.
     pub limits: Limits,
 }
 
-/// What came of a pair.
+/// The result of a pair.
 pub struct DockedPair {
     /// Its JSON entry.
     pub entry: Value,
     /// Its row of the table.
     pub outcome: Result<RunSummary, Error>,
-    /// Its poses, where they are kept in one file with those of others.
+    /// Its poses, if they are kept in one file with those of other pairs.
     pub poses: Option<PosesOfPair>,
 }
 
-/// What a pair left: whether it had to be docked, its summary, and its poses where they are kept elsewhere.
-type Left = (bool, RunSummary, Option<PosesOfPair>);
+/// A pair that did not fail.
+struct DonePair {
+    /// Whether it was docked in this call.
+    is_new: bool,
+    summary: RunSummary,
+    /// Its poses, if they are kept in one file with those of other pairs.
+    poses: Option<PosesOfPair>,
+}
 
 impl PairWork {
     /// Docks the pair on some threads, and reports it.
@@ -66,9 +118,14 @@ impl PairWork {
         });
         let head = &self.head;
         match self.attempts(threads, console) {
-            Ok((anew, summary, poses)) => {
-                console.say(format!("{head}: {}", summary_line(&summary, anew, clock)));
-                entry["status"] = if anew { "docked" } else { "kept" }.into();
+            Ok(DonePair {
+                is_new,
+                summary,
+                poses,
+            }) => {
+                let seconds = is_new.then(|| clock.elapsed().as_secs_f64());
+                console.say(format!("{head}: {}", summary.line(seconds)));
+                entry["status"] = if is_new { "docked" } else { "kept" }.into();
                 entry["best"] = summary.best.clone();
                 entry["first_acceptable_rank"] = summary.first_acceptable.into();
                 DockedPair {
@@ -89,13 +146,13 @@ impl PairWork {
         }
     }
 
-    /// Whether it leaves a directory.
+    /// Whether it has a directory in the end.
     fn has_directory(&self) -> bool {
         matches!(self.keep, Keep::Top | Keep::All)
     }
 
     /// Docks it, and again where that may help.
-    fn attempts(&self, threads: usize, console: Console) -> Result<Left, Error> {
+    fn attempts(&self, threads: usize, console: Console) -> Result<DonePair, Error> {
         let mut retries = self.limits.retries;
         loop {
             let time = PairTime::new(self.limits, console);
@@ -122,16 +179,16 @@ impl PairWork {
         }
     }
 
-    fn once(&self, threads: usize, silent: Console, console: Console) -> Result<Left, Error> {
+    fn once(&self, threads: usize, silent: Console, console: Console) -> Result<DonePair, Error> {
         let dock = self.dock.clone();
         dock.prepared(silent, Some(threads), |prepared| match (self.keep, prepared) {
             (Keep::All, prepared) => {
-                let anew = self.run(prepared, silent, console)?;
-                Ok((anew, RunSummary::of(&self.directory)?, None))
+                let is_new = self.run(prepared, silent, console)?;
+                let summary = RunSummary::of(&self.directory)?;
+                Ok(DonePair { is_new, summary, poses: None })
             }
             (_, Prepared::Run(docking)) => {
-                let (summary, poses) = self.poses(*docking, silent)?;
-                Ok((true, summary, poses))
+                self.poses(*docking, silent)
             }
             (_, Prepared::Ensemble(_)) => Err(Error::input(
                 "this pair has several conformations, which are docked in runs of their own, and only --keep all keeps runs",
@@ -153,24 +210,18 @@ impl PairWork {
     }
 
     /// Docks the pair without a directory of a run.
-    fn poses(
-        &self,
-        docking: Docking,
-        silent: Console,
-    ) -> Result<(RunSummary, Option<PosesOfPair>), Error> {
+    fn poses(&self, docking: Docking, silent: Console) -> Result<DonePair, Error> {
         let docked = docking.dock(silent)?;
-        let poses = match self.keep.has_poses() {
-            true => Some(PosesOfPair::new(
-                &self.name,
-                &docked.wide_table(),
-                self.rows,
-            )),
-            false => None,
-        };
+        let poses = self.keep.has_poses();
+        let poses = poses.then(|| PosesOfPair::new(&self.name, &docked.wide_table(), self.rows));
         let poses = poses.transpose().map_err(Error::machine)?;
         if self.keep == Keep::Top {
             docked.export_top(&self.directory)?;
         }
-        Ok((docked.summary(), poses))
+        Ok(DonePair {
+            is_new: true,
+            summary: docked.summary(),
+            poses,
+        })
     }
 }

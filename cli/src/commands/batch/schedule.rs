@@ -1,6 +1,6 @@
 //! Which pairs of a batch are docked at the same time, and on how many threads each.
 //!
-//! A run on T threads takes s + (1 - s) / T of its time on one (Amdahl), where s is its serial share. So many pairs
+//! A run on T threads takes s + (1 - s) / T of its time on one (Amdahl), where s is its serial share. Many pairs
 //! take the least time on one thread each, T at a time. But the last of them would leave threads idle, and one that is
 //! far larger than the others would be waited for. So the largest pairs are docked first, one after another, each on all
 //! threads: as many as make the whole batch shortest.
@@ -8,15 +8,19 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
+use knotdock::threads;
+
+use crate::commands::batch::batch_pairs::Pair;
+
 /// Serial share of a run: `knotdock dock` of the example is 1.93 times as fast with -j 2 as with -j 1.
 const SERIAL: f64 = 0.036;
-/// Beyond so many pairs a thread, the last ones are a small part of the whole, and only their sum counts.
+/// Pairs per thread beyond which the last ones are a small part of the whole, and only the sum of all counts.
 const MANY: usize = 64;
 
-/// A pair that waits: its place in the table, and how many threads dock it.
+/// When and how a pair is docked.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct Turn {
-    /// Place in the table.
+pub struct Slot {
+    /// Place among the pairs.
     pub pair: usize,
     /// Threads.
     pub threads: usize,
@@ -24,44 +28,65 @@ pub struct Turn {
     pub is_alone: bool,
 }
 
-/// What a pair's own options say.
+/// Demands of a pair's own options.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct Own {
-    /// Threads, where they name a number.
-    pub threads: Option<usize>,
-    /// Whether it has to be by itself.
-    pub is_alone: bool,
+struct Demand {
+    /// Threads, if they name a number.
+    threads: Option<usize>,
+    /// Whether no other pair may be docked meanwhile.
+    is_alone: bool,
 }
 
-/// The turns of pairs in the order of docking, by what each is expected to cost (in any unit) on `threads` threads.
-/// Those that are alone come first.
-pub fn turns(costs: &[f64], own: &[Own], threads: usize) -> Vec<Turn> {
-    let is_free = |&pair: &usize| own[pair] == Own::default();
+/// The schedule of some pairs, and the threads of all together: those `given`, or else those that all pairs' own
+/// options agree on.
+pub fn schedule(pairs: &[Pair], given: Option<usize>) -> (Vec<Slot>, usize) {
+    // A file of options that cannot be read is a failure of its pair alone.
+    let own = pairs.iter().map(|pair| pair.dock.own_threads());
+    let own: Vec<(Option<usize>, bool)> = own.map(Result::unwrap_or_default).collect();
+    let first = own.first().and_then(|(threads, _)| *threads);
+    let agreed = first.filter(|first| own.iter().all(|(threads, _)| *threads == Some(*first)));
+    let threads = threads::or_all(given.or(agreed));
+    // Threads that all pairs agree on are those of the batch.
+    let demands = own.into_iter().map(|(own, is_alone)| Demand {
+        threads: own.filter(|&own| own != threads),
+        is_alone,
+    });
+    let costs: Vec<f64> = pairs.iter().map(|pair| pair.cost).collect();
+    (
+        slots(&costs, &demands.collect::<Vec<_>>(), threads),
+        threads,
+    )
+}
+
+/// The slots of pairs in the order of docking, by their expected costs (in any unit) on `threads` threads. Pairs that
+/// are docked alone come first.
+fn slots(costs: &[f64], demands: &[Demand], threads: usize) -> Vec<Slot> {
+    let is_free = |&pair: &usize| demands[pair] == Demand::default();
     let (mut order, bound): (Vec<usize>, Vec<usize>) = (0..costs.len()).partition(is_free);
-    let mut turns: Vec<Turn> = bound
+    let mut slots: Vec<Slot> = bound
         .into_iter()
         .map(|pair| {
-            let wanted = own[pair].threads.unwrap_or(threads);
-            let is_alone = own[pair].is_alone || wanted >= threads;
-            turn(pair, wanted, is_alone)
+            let threads_of_pair = demands[pair].threads.unwrap_or(threads);
+            let is_alone = demands[pair].is_alone || threads_of_pair >= threads;
+            slot(pair, threads_of_pair, is_alone)
         })
         .collect();
-    let all = |pair| turn(pair, threads, true);
+    let all = |pair| slot(pair, threads, true);
     if threads == 1 {
-        turns.extend(order.into_iter().map(all));
+        slots.extend(order.into_iter().map(all));
     } else {
         order.sort_by(|&a, &b| costs[b].total_cmp(&costs[a]));
         let sorted: Vec<f64> = order.iter().map(|&pair| costs[pair]).collect();
         let rest = order.split_off(alone(&sorted, threads));
-        turns.extend(order.into_iter().map(all));
-        turns.extend(rest.into_iter().map(|pair| turn(pair, 1, false)));
+        slots.extend(order.into_iter().map(all));
+        slots.extend(rest.into_iter().map(|pair| slot(pair, 1, false)));
     }
-    turns.sort_by_key(|turn| !turn.is_alone);
-    turns
+    slots.sort_by_key(|slot| !slot.is_alone);
+    slots
 }
 
-fn turn(pair: usize, threads: usize, is_alone: bool) -> Turn {
-    Turn {
+fn slot(pair: usize, threads: usize, is_alone: bool) -> Slot {
+    Slot {
         pair,
         threads,
         is_alone,
@@ -108,10 +133,10 @@ mod tests {
     use super::*;
 
     fn widths(costs: &[f64], threads: usize) -> Vec<usize> {
-        let turns = turns(costs, &vec![Own::default(); costs.len()], threads);
+        let slots = slots(costs, &vec![Demand::default(); costs.len()], threads);
         let mut widths = vec![0; costs.len()];
-        for turn in turns {
-            widths[turn.pair] = turn.threads;
+        for slot in slots {
+            widths[slot.pair] = slot.threads;
         }
         widths
     }
@@ -130,20 +155,20 @@ mod tests {
         assert_eq!(widths(&[2.0, 3.0], 1), [1, 1]);
     }
 
-    /// Every pair has one turn; on one thread they come in the order of the table.
+    /// Every pair has one slot; on one thread they come in the order of the table.
     #[test]
-    fn every_pair_has_its_turn() {
+    fn every_pair_has_its_slot() {
         let costs = [3.0, 9.0, 1.0, 4.0, 4.0];
-        let mut own = [Own::default(); 5];
-        own[1].threads = Some(3);
+        let mut demands = [Demand::default(); 5];
+        demands[1].threads = Some(3);
         for threads in 1..6 {
-            let turns = turns(&costs, &own, threads);
-            let mut pairs: Vec<usize> = turns.iter().map(|turn| turn.pair).collect();
-            assert!(turns.iter().all(|turn| turn.pair != 1 || turn.threads == 3));
+            let slots = slots(&costs, &demands, threads);
+            let mut pairs: Vec<usize> = slots.iter().map(|slot| slot.pair).collect();
+            assert!(slots.iter().all(|slot| slot.pair != 1 || slot.threads == 3));
             pairs.sort_unstable();
             assert_eq!(pairs, [0, 1, 2, 3, 4]);
         }
-        let in_order: Vec<usize> = turns(&costs, &[Own::default(); 5], 1)
+        let in_order: Vec<usize> = slots(&costs, &[Demand::default(); 5], 1)
             .iter()
             .map(|t| t.pair)
             .collect();

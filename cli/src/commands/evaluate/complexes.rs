@@ -2,8 +2,8 @@
 
 use std::path::PathBuf;
 
-use crate::tables::complexes::{EvaluatedComplex, write_complexes};
-use crate::tables::report::align;
+use crate::tables::complexes::{EvaluatedComplex, objects, write_complexes};
+use crate::tables::report::text_table;
 use knotdock::evaluate::ChainChoice;
 use knotdock::output::files::whole_file::write_whole;
 use knotdock_scoring::se3::Pose;
@@ -17,7 +17,7 @@ use crate::messages::console::Console;
 use knotdock_structures::Error;
 
 impl Evaluate {
-    /// Evaluates complex files; the exit code: 2 where some could not be.
+    /// Evaluates complex files; the exit code: 2 if some could not be evaluated.
     pub(super) fn complexes(&self, console: Console) -> Result<u8, Error> {
         let (files, chains) = files_and_chains(&self.words, "evaluate")?;
         if self.receptor.is_some() || self.ligand.is_some() {
@@ -58,13 +58,12 @@ impl Evaluate {
             write_whole(path, |file| write_complexes(&rows, file))?;
         }
         console.say(listing(&rows));
-        let objects: Vec<_> = rows.iter().map(EvaluatedComplex::object).collect();
-        console.result(&json!({ "complexes": objects }))?;
+        console.result(&json!({ "complexes": objects(&rows) }))?;
         Ok(code)
     }
 }
 
-/// How near a model of a file is to the known complex, its sides where they stand; and what to know of the match.
+/// The quality of a model of a file, its sides in place, and notes on its match with the known complex.
 fn evaluated(
     file: &str,
     sides: ComplexSides,
@@ -93,11 +92,7 @@ fn evaluated(
 
 /// Many complexes as a table.
 fn listing(rows: &[EvaluatedComplex]) -> String {
-    let header = [
-        "file", "model", "chains", "native", "irmsd", "lrmsd", "fnat", "dockq", "capri", "matched",
-    ];
-    let mut lines = vec![header.map(str::to_owned).to_vec()];
-    lines.extend(rows.iter().map(|row| {
+    let lines = rows.iter().map(|row| {
         let quality = &row.quality;
         vec![
             row.file.clone(),
@@ -111,6 +106,7 @@ fn listing(rows: &[EvaluatedComplex]) -> String {
             quality.capri.name().to_owned(),
             format!("{:.0}%", 100.0 * row.matched),
         ]
-    }));
-    align(&lines)
+    });
+    let header = "file|model|chains|native|irmsd|lrmsd|fnat|dockq|capri|matched";
+    text_table(header, lines)
 }

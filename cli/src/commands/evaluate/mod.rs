@@ -214,7 +214,7 @@ impl Evaluate {
         };
         let needed = "name the molecules that were docked with --receptor and --ligand, and the known complex with \
                       --native or with --native-receptor and --native-ligand";
-        let run = RecordedRun::read(run_path).map_err(|error| Error::from(error).help(needed))?;
+        let run = RecordedRun::read(run_path).map_err(|error| error.help(needed))?;
         let part = |named: &Option<String>, place: usize| match named {
             Some(text) => {
                 let [input] = Input::read_all([text], &reading)?;
@@ -247,12 +247,7 @@ impl Evaluate {
 
 /// Every pose's quality as a table.
 fn listing(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
-    let mut lines = vec![
-        ["rank", "irmsd", "lrmsd", "fnat", "dockq", "capri"]
-            .map(str::to_owned)
-            .to_vec(),
-    ];
-    lines.extend(rows.iter().zip(qualities).map(|(row, quality)| {
+    let lines = rows.iter().zip(qualities).map(|(row, quality)| {
         vec![
             row.rank.to_string(),
             format!("{:.2}", quality.irmsd),
@@ -261,8 +256,8 @@ fn listing(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
             format!("{:.3}", quality.dockq),
             quality.capri.name().to_owned(),
         ]
-    }));
-    report::align(&lines)
+    });
+    report::text_table("rank|irmsd|lrmsd|fnat|dockq|capri", lines)
 }
 
 /// A docked chain with a native one, as `A:E`; `_` is the chain without a name.

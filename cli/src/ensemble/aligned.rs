@@ -1,23 +1,24 @@
-//! Conformations as read: each laid on the first of its side.
+//! Conformations as read: each aligned with the first of its side.
 
-use crate::records::ensemble_record::ConformationRecord;
+use crate::records::joined;
 use knotdock::dock::run::molecule_points;
 use knotdock::evaluate::{Superposed, superpose};
 use knotdock::options::DockOptions;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{InputSpec, Molecule};
+use serde_json::{Value, json};
 
 use crate::inputs::bodies::Bodies;
 use crate::inputs::conformations::Conformation;
 use crate::inputs::molecules::Input;
 use knotdock_structures::Error;
 
-/// A conformation that lies on the first of its side.
-pub struct Laid {
+/// A conformation aligned with the first of its side.
+pub struct AlignedConformation {
     /// Its name in tables.
     pub name: String,
-    /// What is read.
+    /// Its file and parts.
     pub spec: InputSpec,
     /// Its file.
     record: InputRecord,
@@ -27,7 +28,7 @@ pub struct Laid {
     pub radius: f64,
 }
 
-impl Laid {
+impl AlignedConformation {
     fn new(conformation: &Conformation, input: &Input, first: &Molecule) -> Result<Self, Error> {
         let place = superpose(&input.molecule, first).map_err(|error| {
             let failure = Error::input(&error).at(&input.record.path);
@@ -42,20 +43,23 @@ impl Laid {
         })
     }
 
-    /// The conformation for ensemble.json.
-    pub fn record(&self) -> ConformationRecord {
+    /// The entry of ensemble.json: the file, the motion to the frame of the first conformation (qw, qx, qy, qz, and tx,
+    /// ty, tz in Å), the backbone RMSD from the first in Å, and the residues shared with it.
+    pub fn record(&self) -> Value {
         let Pose { translation, .. } = self.place.motion;
         let [w, x, y, z] = self.place.motion.quaternion();
-        ConformationRecord {
-            name: self.name.clone(),
-            record: self.record.clone(),
-            to_first: [w, x, y, z, translation.x, translation.y, translation.z],
-            rmsd_from_first: self.place.rmsd,
-            residues_matched: self.place.matched,
-        }
+        joined([
+            json!({ "name": self.name }),
+            json!(self.record),
+            json!({
+                "to_first": [w, x, y, z, translation.x, translation.y, translation.z],
+                "rmsd_from_first": self.place.rmsd,
+                "residues_matched": self.place.matched,
+            }),
+        ])
     }
 
-    /// What it is, in a line.
+    /// Its description in a line.
     pub fn line(&self) -> String {
         let model = self.spec.model;
         format!(
@@ -70,18 +74,18 @@ impl Laid {
 }
 
 /// The conformations of both sides, receptor first, and the points (Å) of the first ligand that make clusters.
-pub struct LaidSides {
+pub struct AlignedSides {
     /// Those of each side, the first first.
-    pub sides: [Vec<Laid>; 2],
+    pub sides: [Vec<AlignedConformation>; 2],
     /// Points of the first ligand.
     pub points: Vec<[f64; 3]>,
 }
 
-impl LaidSides {
-    /// Reads all conformations as they will be read for docking, and lays each on the first of its side.
+impl AlignedSides {
+    /// Reads all conformations as they will be read for docking, and aligns each with the first of its side.
     ///
     /// # Errors
-    /// [`Error`] where one cannot be read or is another molecule.
+    /// [`Error`] if one cannot be read or is another molecule.
     pub fn read(sides: &[Vec<Conformation>; 2], options: &DockOptions) -> Result<Self, Error> {
         let pair = |receptor: &Conformation, ligand: &Conformation| {
             read_pair([&receptor.spec, &ligand.spec], options)
@@ -97,9 +101,9 @@ impl LaidSides {
                 0 => pair(conformation, ligand)?,
                 _ => pair(receptor, conformation)?,
             };
-            Laid::new(conformation, &inputs[side], firsts[side])
+            AlignedConformation::new(conformation, &inputs[side], firsts[side])
         };
-        let of_side = |side: usize| -> Result<Vec<Laid>, Error> {
+        let of_side = |side: usize| -> Result<Vec<AlignedConformation>, Error> {
             let conformations = sides[side].iter();
             conformations.map(|one| laid(side, one)).collect()
         };
@@ -120,21 +124,17 @@ fn read_pair(specs: [&InputSpec; 2], options: &DockOptions) -> Result<Box<[Input
     }
 }
 
+/// Largest distance in Å of an atom from the mean of all.
 fn radius(molecule: &Molecule) -> f64 {
     let count = molecule.atoms.len().max(1) as f64;
-    let middle: [f64; 3] = std::array::from_fn(|axis| {
-        molecule
-            .atoms
-            .iter()
-            .map(|atom| atom.position[axis])
-            .sum::<f64>()
-            / count
-    });
+    let atoms = || molecule.atoms.iter();
+    let middle: [f64; 3] =
+        std::array::from_fn(|axis| atoms().map(|atom| atom.position[axis]).sum::<f64>() / count);
     let square = |position: [f64; 3]| -> f64 {
-        (0..3)
-            .map(|axis| (position[axis] - middle[axis]).powi(2))
+        let axes = 0..3;
+        axes.map(|axis| (position[axis] - middle[axis]).powi(2))
             .sum()
     };
-    let squares = molecule.atoms.iter().map(|atom| square(atom.position));
+    let squares = atoms().map(|atom| square(atom.position));
     squares.fold(0.0, f64::max).sqrt()
 }

@@ -1,13 +1,12 @@
-//! What the runs of an ensemble come to together: the joint table, complexes, the record, and the report.
+//! Joint results of an ensemble: the table, complexes, the record, and the report.
 
 use std::path::Path;
 
-use crate::records::ensemble_record::{
-    EnsembleRecord, EnsembleResults, EnsembleTiming, MemberRecord, RECORD, SCHEMA,
-};
+use crate::records::ensemble_record::{RECORD, SCHEMA};
+use crate::records::joined;
 use crate::report::Listed;
 use crate::tables::report::{BEST, best_rows, counted};
-use knotdock::ensemble::table::{DockedMember, JointTable};
+use knotdock::ensemble::table::JointTable;
 use knotdock::output::files::own_files::MEMBERS;
 use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::Stage;
@@ -18,21 +17,20 @@ use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
 use serde_json::{Value, json};
 
-use crate::ensemble::laid::Laid;
+use crate::ensemble::aligned::AlignedConformation;
 use crate::ensemble::place::Place;
-use crate::ensemble::run::Ensemble;
+use crate::ensemble::run::{DockedMembers, Ensemble};
 use crate::inputs::bodies::Bodies;
 use crate::messages::console::Console;
 use knotdock::output::run_folder::write_scripts;
 use knotdock_structures::Error;
 
 impl Ensemble {
-    /// Writes the joint table, complexes and the record, and reports them; the JSON object. `docked` are the members,
-    /// the poses that they kept and how many were there already.
+    /// Writes the joint table, complexes and the record, and reports them; the JSON object.
     pub(super) fn write(
         &self,
         joint: &JointTable,
-        (docked, poses, kept): (&[DockedMember], u64, usize),
+        docked: &DockedMembers,
         place: Place,
         console: Console,
     ) -> Result<Value, Error> {
@@ -40,13 +38,7 @@ impl Ensemble {
         staging.write("poses.csv", |file| joint.table.write_to(file))?;
         let viewed = self.write_top(joint, &staging.folder().join("top"))?;
         write_scripts(staging, &viewed)?;
-        let results = EnsembleResults {
-            rows: joint.table.rows().len(),
-            clusters: joint.clusters,
-            poses,
-        };
-        let record = self.record(docked, results, staging, kept)?;
-        let record = serde_json::to_value(&record).map_err(Error::machine)?;
+        let record = self.record(joint, docked, staging)?;
         staging.write(RECORD, |file| to_json(file, &record))?;
         if !self.given.options.output.no_report {
             let name = self.directory.display().to_string();
@@ -79,7 +71,7 @@ impl Ensemble {
             if own.is_empty() {
                 continue;
             }
-            let specs = self.laid(member).map(|laid| laid.spec.clone());
+            let specs = self.conformations(member).map(|laid| laid.spec.clone());
             let bodies = Bodies::of(specs, &self.given.options)?;
             let written = bodies
                 .placed()
@@ -92,52 +84,55 @@ impl Ensemble {
         Ok(viewed)
     }
 
-    /// ensemble.json.
-    fn record<'a>(
-        &'a self,
-        docked: &[DockedMember],
-        results: EnsembleResults,
+    /// ensemble.json. Everything outside `timing` and `command` is the same, byte for byte, for the same input, options
+    /// and CPU feature level.
+    fn record(
+        &self,
+        joint: &JointTable,
+        docked: &DockedMembers,
         staging: &Stage,
-        members_kept: usize,
-    ) -> Result<EnsembleRecord<'a>, Error> {
-        let member = |docked: &DockedMember| {
-            let best = docked
-                .table
-                .objects([0])
-                .first()
-                .and_then(|row| row["pose_score"].as_f64());
-            let [receptor_model, ligand_model] = docked.conformations.clone();
-            MemberRecord {
-                name: docked.name.clone(),
-                receptor_model,
-                ligand_model,
-                rows: docked.table.rows().len(),
-                best_pose_score: best,
-            }
+    ) -> Result<Value, Error> {
+        let members = docked.members.iter().map(|member| {
+            let [receptor, ligand] = &member.conformations;
+            let best = member.table.objects([0]);
+            let best = best.first().and_then(|row| row["pose_score"].as_f64());
+            json!({
+                "name": member.name,
+                "receptor_model": receptor,
+                "ligand_model": ligand,
+                "rows": member.table.rows().len(),
+                "best_pose_score": best,
+            })
+        });
+        let [receptor, ligand] = self.aligned.sides.each_ref();
+        let conformations = |side: &[AlignedConformation]| {
+            side.iter()
+                .map(AlignedConformation::record)
+                .collect::<Vec<_>>()
         };
-        let [receptor, ligand] = self
-            .laid
-            .sides
-            .each_ref()
-            .map(|side| side.iter().map(Laid::record).collect::<Vec<_>>());
-        Ok(EnsembleRecord {
-            schema: SCHEMA,
-            program: Program::this(),
-            receptor,
-            ligand,
-            options: &self.given.options,
-            members: docked.iter().map(member).collect(),
-            results,
-            files: staging.checksums()?,
-            timing: EnsembleTiming {
-                wall_seconds: self.clock.seconds(),
-                expected_seconds: self.expected_seconds,
-                members_kept,
-            },
-            command: std::env::args_os()
-                .map(|word| word.to_string_lossy().into_owned())
-                .collect(),
-        })
+        let command = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
+        Ok(joined([
+            json!({ "schema": SCHEMA }),
+            json!(Program::this()),
+            json!({
+                "receptor": conformations(receptor),
+                "ligand": conformations(ligand),
+                "options": self.given.options,
+                "members": members.collect::<Vec<_>>(),
+                "results": {
+                    "rows": joint.table.rows().len(),
+                    "clusters": joint.clusters,
+                    "poses": docked.poses,
+                },
+                "files": staging.checksums()?,
+                "timing": {
+                    "wall_seconds": self.clock.seconds(),
+                    "expected_seconds": self.expected_seconds,
+                    "members_kept": docked.kept,
+                },
+                "command": command.collect::<Vec<_>>(),
+            }),
+        ]))
     }
 
     /// Reports the joint ranking.

@@ -1,4 +1,5 @@
-//! The members of a file of poses: text packed by gzip, one member a pair, which all readers of gzip take as one text.
+//! The file of poses: text packed by gzip, one member per pair, with the same columns for all pairs. All readers of
+//! gzip take the members as one text.
 //!
 //! CSV packed by gzip was chosen over Parquet: the crates `parquet` and `arrow` would double what the program is built
 //! of, and a Parquet file ends in an index, so that none can be appended to. Members of gzip can be appended, cut and
@@ -7,11 +8,15 @@
 use std::fs::File;
 use std::io::{self, BufRead, BufReader, Read, Seek, SeekFrom, Write};
 
+use csv::StringRecord;
 use flate2::Compression;
 use flate2::bufread::GzDecoder;
 use flate2::write::GzEncoder;
 
 use knotdock::output::files::folder::next_line;
+use knotdock::output::tables::fields::Column;
+use knotdock::output::tables::run_table::RunTable;
+use knotdock::table_text::cells::TableWriter;
 
 /// Most bytes of a member's text.
 const MAX_TEXT: u64 = 64 << 20;
@@ -20,7 +25,7 @@ const MAX_TEXT: u64 = 64 << 20;
 ///
 /// # Errors
 /// [`io::ErrorKind::FileTooLarge`] for a text of more than 64 MB.
-pub(super) fn packed(text: &[u8]) -> io::Result<Vec<u8>> {
+fn packed(text: &[u8]) -> io::Result<Vec<u8>> {
     if text.len() as u64 > MAX_TEXT {
         return Err(too_large());
     }
@@ -108,6 +113,52 @@ pub(super) fn copy_range(
         return Err(io::ErrorKind::UnexpectedEof.into());
     }
     Ok(())
+}
+
+/// Columns that some runs add to their tables, in this order. Each is empty where a pair has none of it.
+pub const WIDE_COLUMNS: [&str; 6] = ["restraints_met", "irmsd", "lrmsd", "fnat", "dockq", "capri"];
+
+/// A pair's poses as a member of the file: each row is the pair's name and a row of its `poses.csv`.
+#[derive(Clone, Debug)]
+pub struct PosesOfPair(Vec<u8>);
+
+impl PosesOfPair {
+    /// The first `count` rows of a table by [`RunTable::wide`].
+    ///
+    /// # Errors
+    /// [`io::ErrorKind::FileTooLarge`] for more than 64 MB of text.
+    pub fn new(name: &str, table: &RunTable, count: usize) -> io::Result<Self> {
+        member(table.records().take(count), name).map(Self)
+    }
+
+    /// Its bytes.
+    pub(super) fn bytes(&self) -> &[u8] {
+        &self.0
+    }
+}
+
+/// The first member: the names of the columns.
+///
+/// # Errors
+/// [`io::ErrorKind::FileTooLarge`] for more than 64 MB of text.
+pub(super) fn header() -> io::Result<Vec<u8>> {
+    let further = WIDE_COLUMNS.map(|name| Column {
+        name: name.to_owned(),
+        fields: Vec::new(),
+    });
+    member([RunTable::wide(&[], &further).header()], "name")
+}
+
+/// Rows as a member, each behind the same first field.
+fn member(rows: impl IntoIterator<Item = StringRecord>, first: &str) -> io::Result<Vec<u8>> {
+    let mut text = Vec::new();
+    let mut table = TableWriter::new(&mut text);
+    for row in rows {
+        table.row(std::iter::once(first).chain(&row))?;
+    }
+    table.flush()?;
+    drop(table);
+    packed(&text)
 }
 
 #[cfg(test)]
