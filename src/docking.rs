@@ -33,7 +33,7 @@ use crate::dock::outcome::DockOutcome;
 use crate::dock::pair::PreparedPair;
 use crate::dock::plan::DockPlan;
 use crate::dock::run::dock_until;
-use crate::interface::run_contacts::{MAX_ROWS, RunContacts};
+use crate::output::run_contacts::{MAX_ROWS, RunContacts};
 use crate::options::DockOptions;
 use crate::output::files::complexes::{Complex, complex};
 use crate::output::files::own_files::RUN;

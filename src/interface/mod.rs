@@ -16,7 +16,6 @@
 
 mod complementarity;
 mod contacts;
-pub mod run_contacts;
 mod score;
 mod shares;
 mod surface_dots;

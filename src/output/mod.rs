@@ -26,5 +26,6 @@
 
 pub mod files;
 pub mod records;
+pub mod run_contacts;
 pub mod run_folder;
 pub mod tables;

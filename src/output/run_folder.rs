@@ -11,7 +11,7 @@ use serde_json::Value;
 use crate::dock::memory::process;
 use crate::dock::outcome::DockOutcome;
 use crate::dock::plan::DockPlan;
-use crate::interface::run_contacts::RunContacts;
+use crate::output::run_contacts::RunContacts;
 use crate::options::DockOptions;
 use crate::output::files::assemblies::{Surface, write_assemblies};
 use crate::output::files::complexes::write_complexes;

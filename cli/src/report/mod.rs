@@ -29,7 +29,7 @@ mod shown;
 mod solids;
 mod viewer;
 
-pub use knotdock::interface::run_contacts::{MAX_ROWS, RunContacts};
+pub use knotdock::output::run_contacts::{MAX_ROWS, RunContacts};
 pub use lists::Listed;
 pub use run_data::{ReportBodies, RunReport};
 pub use solids::SolidsReport;

@@ -19,7 +19,7 @@ use serde_json::{Value, json};
 
 use crate::report::columns::{ShownColumn, is_term, shown};
 use crate::report::shown::{placement, rounded, solid};
-use knotdock::interface::run_contacts::RunContacts;
+use knotdock::output::run_contacts::RunContacts;
 use knotdock::interface::{Contact, ResidueName, heavy_residues};
 use knotdock::options::DockOptions;
 use knotdock::output::files::assemblies::Surface;
