@@ -20,7 +20,6 @@ use crate::restraints::RestraintFileError;
 use crate::threads::ThreadsError;
 use knotdock_structures::ball_file::BallFileError;
 use knotdock_structures::mesh::MeshError;
-use knotdock_structures::molecule::ReadError;
 
 use crate::cli::messages::failure::Failure;
 
@@ -125,9 +124,15 @@ impl From<RestraintFileError> for Failure {
     }
 }
 
-impl From<ReadError> for Failure {
-    fn from(error: ReadError) -> Self {
-        unreadable(&error, error.file(), error.line(), error.remedy())
+impl From<knotdock_structures::Error> for Failure {
+    fn from(error: knotdock_structures::Error) -> Self {
+        let failure = Self::input(&error)
+            .on_line(error.line())
+            .remedy(error.remedy().unwrap_or_default());
+        match error.file() {
+            Some(file) => failure.at(file),
+            None => failure,
+        }
     }
 }
 

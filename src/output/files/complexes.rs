@@ -5,7 +5,7 @@ use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{
-    ChainMap, Format, Molecule, WriteError, complex_format, write_complex,
+    ChainMap, Format, Molecule, complex_format, write_complex,
 };
 
 use crate::output::files::disk;
@@ -83,7 +83,7 @@ pub fn write_complexes(
         let path = folder.join(&name);
         let written = write_new(&path, |mut file| {
             let map = write_complex(&mut file, format, &with(receptor, &others), &remarks);
-            chains = Some(map.map_err(io_error)?);
+            chains = Some(map?);
             Ok(())
         });
         written.map_err(|source| FileError::writing(&path, source))?;
@@ -93,7 +93,7 @@ pub fn write_complexes(
         Some(chains) => chains,
         // No complex was requested: the names are what they would have been.
         None => write_complex(&mut io::sink(), format, &with(receptor, &unplaced), &[])
-            .map_err(|error| FileError::writing(folder, io_error(error)))?,
+            .map_err(|error| FileError::writing(folder, error))?,
     };
     Ok(Written { names, chains })
 }
@@ -145,9 +145,3 @@ fn remarks(row: &PoseRow, arrangement: Arrangement, note: &str) -> Vec<String> {
     ]
 }
 
-pub(crate) fn io_error(error: WriteError) -> io::Error {
-    match error {
-        WriteError::Io(error) => error,
-        other => io::Error::other(other),
-    }
-}

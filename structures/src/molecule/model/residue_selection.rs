@@ -1,8 +1,7 @@
 //! Residues as a user picks them: `H:1-50,52A,L`.
 
 use crate::molecule::model::groups::residue_runs;
-use crate::molecule::model::molecule::Molecule;
-use crate::molecule::model::wording::show_chain;
+use crate::molecule::model::molecule::{Molecule, show_chain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -287,8 +286,8 @@ impl UnknownResidues {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::atom::Atom;
-    use crate::molecule::model::format::Format;
+    use crate::molecule::model::molecule::Atom;
+    use crate::molecule::model::molecule::Format;
 
     fn molecule() -> Molecule {
         let residues = [

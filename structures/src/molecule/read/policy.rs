@@ -7,6 +7,8 @@ use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
+use crate::Error;
+
 /// Options on reading a structure file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(default)]
@@ -72,16 +74,13 @@ impl ModelChoice {
 }
 
 impl FromStr for ModelChoice {
-    type Err = PolicyError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, PolicyError> {
+    fn from_str(text: &str) -> Result<Self, Error> {
         match (text, text.parse()) {
             ("all", _) => Ok(Self::All),
             (_, Ok(number)) if number > 0 => Ok(Self::Number(number)),
-            _ => Err(PolicyError {
-                text: text.to_owned(),
-                choices: "a whole number above zero and all",
-            }),
+            _ => Err(none_of("a whole number above zero and all", text)),
         }
     }
 }
@@ -105,9 +104,9 @@ impl From<ModelChoice> for WrittenModel {
 }
 
 impl TryFrom<WrittenModel> for ModelChoice {
-    type Error = PolicyError;
+    type Error = Error;
 
-    fn try_from(written: WrittenModel) -> Result<Self, PolicyError> {
+    fn try_from(written: WrittenModel) -> Result<Self, Error> {
         match written {
             WrittenModel::Number(number) => number.to_string().parse(),
             WrittenModel::Word(word) => word.parse(),
@@ -162,26 +161,21 @@ pub enum AlternateLocation {
     Named(char),
 }
 
-/// A policy that is none.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("'{text}' is none of {choices}")]
-pub struct PolicyError {
-    /// What was given.
-    text: String,
-    /// What there is to choose from.
-    choices: &'static str,
+/// The error of a text that is none of the choices.
+fn none_of(choices: &str, text: &str) -> Error {
+    Error::input(format!("'{text}' is none of {choices}")).help(format!("give one of {choices}"))
 }
 
 /// Reads and writes a policy as one of a few words.
 macro_rules! words {
     ($policy:ty, $choices:literal, $($value:path = $word:literal),+) => {
         impl FromStr for $policy {
-            type Err = PolicyError;
+            type Err = Error;
 
-            fn from_str(text: &str) -> Result<Self, PolicyError> {
+            fn from_str(text: &str) -> Result<Self, Error> {
                 match text {
                     $($word => Ok($value),)+
-                    _ => Err(PolicyError { text: text.to_owned(), choices: $choices }),
+                    _ => Err(none_of($choices, text)),
                 }
             }
         }
@@ -217,17 +211,14 @@ words!(
 );
 
 impl FromStr for AlternateLocation {
-    type Err = PolicyError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, PolicyError> {
+    fn from_str(text: &str) -> Result<Self, Error> {
         let mut characters = text.chars();
         match (text, characters.next(), characters.next()) {
             ("occupancy", ..) => Ok(Self::Occupancy),
             (_, Some(name), None) if name.is_ascii_graphic() => Ok(Self::Named(name)),
-            _ => Err(PolicyError {
-                text: text.to_owned(),
-                choices: "occupancy and a single character, such as A",
-            }),
+            _ => Err(none_of("occupancy and a single character, such as A", text)),
         }
     }
 }
@@ -251,9 +242,9 @@ macro_rules! as_text {
         }
 
         impl TryFrom<String> for $policy {
-            type Error = PolicyError;
+            type Error = Error;
 
-            fn try_from(text: String) -> Result<Self, PolicyError> {
+            fn try_from(text: String) -> Result<Self, Error> {
                 text.parse()
             }
         }
