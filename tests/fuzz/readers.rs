@@ -12,8 +12,8 @@ use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};
 use knotdock_structures::molecule::{
-    AlternateLocation, Format, Hetatm, Hydrogens, InputSpec, ModelChoice, ReadOptions,
-    Waters, atom_kinds, read_with_fates, write_molecule,
+    AlternateLocation, Format, Hetatm, Hydrogens, InputSpec, ModelChoice, ReadOptions, Waters,
+    atom_kinds, read_with_fates, write_molecule,
 };
 
 /// A reader under test.

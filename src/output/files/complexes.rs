@@ -4,9 +4,7 @@ use std::io;
 use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::molecule::{
-    ChainMap, Format, Molecule, complex_format, write_complex,
-};
+use knotdock_structures::molecule::{ChainMap, Format, Molecule, complex_format, write_complex};
 
 use crate::output::files::disk;
 use crate::output::files::whole_file::{FileError, write_new};
@@ -144,4 +142,3 @@ fn remarks(row: &PoseRow, arrangement: Arrangement, note: &str) -> Vec<String> {
         format!("then moved by {:.3} {:.3} {:.3} A", t.x, t.y, t.z),
     ]
 }
-

@@ -24,35 +24,19 @@ mod model;
 mod read;
 mod write;
 
-pub use self::chemistry::labels::{LabelReport, Labels};
-pub use self::chemistry::names::plain_atom_name;
-pub use self::chemistry::names::{plain_residue_name, standard_residue_name};
-pub use self::chemistry::residues::{CONTACT_TYPES, atom_kinds, one_letter};
-pub use self::chemistry::rotamers::{Rotamer, log_probability, rotamers};
-pub use self::model::chains::Termini;
-pub use self::model::groups::GroupKind;
-pub use self::model::molecule::Atom;
-pub use self::model::molecule::Format;
-pub use self::model::molecule::Molecule;
-pub use self::model::polar_atoms::{HydrogenBonding, hydrogen_bonding};
-pub use self::model::report::{
-    Altered, AlternateChoice, BuiltAssembly, ChainCount, Confidence, ConfidenceSource, DropKind,
-    Dropped, GroupCount, JoinedModels, OtherName, ReadReport,
+pub use self::chemistry::{
+    CONTACT_TYPES, LabelReport, Labels, Rotamer, atom_kinds, log_probability, one_letter,
+    plain_atom_name, plain_residue_name, rotamers, standard_residue_name,
 };
-pub use self::model::residue_selection::{ResidueSelection, UnknownResidues};
-pub use self::model::sequence::{PeptideChain, PeptideResidue};
-pub use self::model::side_chains::HeldSideChain;
-pub use self::model::side_chains::{SideChain, TurningBond};
-pub use self::model::surface::{PROBE, spiral};
-pub use self::model::unresolved::UnresolvedResidues;
-pub use self::read::confidence::LOW;
-pub use self::read::input::InputSpec;
-pub use self::read::policy::{
-    AlternateLocation, Hetatm, Hydrogens, ModelChoice, ReadOptions, Waters,
+pub use self::model::{
+    Altered, AlternateChoice, Atom, BuiltAssembly, ChainCount, Confidence, ConfidenceSource,
+    DropKind, Dropped, Format, GroupCount, GroupKind, HeldSideChain, HydrogenBonding, JoinedModels,
+    Molecule, OtherName, PROBE, PeptideChain, PeptideResidue, ReadReport, ResidueSelection,
+    SideChain, Termini, TurningBond, UnknownResidues, UnresolvedResidues, hydrogen_bonding, spiral,
 };
-pub use self::read::source::file_bytes;
 pub use self::read::{
-    AtomFate, model_count, read, read_bytes, read_bytes_with_fates, read_with_fates,
+    AlternateLocation, AtomFate, Hetatm, Hydrogens, InputSpec, LOW, ModelChoice, ReadOptions,
+    Waters, file_bytes, model_count, read, read_bytes, read_bytes_with_fates, read_with_fates,
 };
 pub use self::write::{
     ChainMap, ChainName, ModelWriter, Partner, complex_format, fits, write_complex, write_molecule,

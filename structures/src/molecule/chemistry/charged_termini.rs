@@ -10,11 +10,10 @@
 //! Else residues are unresolved between them, and the open ends stand for neutral bonds. Chain names alone do not
 //! decide, since many files have chains merged.
 
-use crate::molecule::chemistry::charges::{CARBOXYL, TERMINI_PKA, amino_terminus};
-use crate::molecule::chemistry::labels::Labels;
-use crate::molecule::model::chains::MAX_CAP_LENGTH;
-use crate::molecule::model::groups::{GroupKind, Residue, ResidueKey};
-use crate::molecule::model::molecule::{Atom, Molecule, squared_distance};
+use crate::molecule::chemistry::{CARBOXYL, Labels, TERMINI_PKA, amino_terminus};
+use crate::molecule::model::{
+    Atom, GroupKind, MAX_CAP_LENGTH, Molecule, Residue, ResidueKey, squared_distance,
+};
 use crate::neighbours::SpatialHash;
 
 /// Longest C-N distance in Å of a peptide bond, with room for poor structures.

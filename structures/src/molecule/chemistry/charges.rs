@@ -8,8 +8,7 @@
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
-use crate::molecule::chemistry::elements::element;
-use crate::molecule::chemistry::residues::is_amino_acid;
+use crate::molecule::chemistry::{element, is_amino_acid};
 
 /// Lines of `#`, and lines of a section, a name, and atoms with their charges.
 const TABLE: &str = include_str!("charges.txt");
@@ -97,7 +96,7 @@ pub(crate) fn nucleotide() -> Charges {
 }
 
 /// Charges of a side chain in the state that its name and the pH call for; `None` for a residue that is not known.
-pub(crate) fn side_chain(residue_name: &str, ph: f64) -> Option<Charges> {
+pub(crate) fn side_chain_charges(residue_name: &str, ph: f64) -> Option<Charges> {
     let state = match residue_name {
         "ASPP" => "ASH",
         "GLUP" => "GLH",
@@ -174,7 +173,7 @@ mod tests {
 
     #[test]
     fn states_follow_the_ph_and_the_name() {
-        let total = |name: &str, ph: f64| sum(side_chain(name, ph).unwrap()).round();
+        let total = |name: &str, ph: f64| sum(side_chain_charges(name, ph).unwrap()).round();
         for (name, at_2, at_7, at_14) in [
             ("ASP", 0.0, -1.0, -1.0),
             ("GLU", 0.0, -1.0, -1.0),
@@ -192,7 +191,7 @@ mod tests {
             let found = [2.0, 7.0, 14.0].map(|ph| total(name, ph));
             assert_eq!(found, [at_2, at_7, at_14], "{name}");
         }
-        assert!(side_chain("XYZ", 7.0).is_none());
+        assert!(side_chain_charges("XYZ", 7.0).is_none());
     }
 
     #[test]

@@ -2,9 +2,7 @@
 
 use std::sync::LazyLock;
 
-use crate::molecule::chemistry::residues::{
-    amino_acid_type, is_amino_acid, is_nucleotide, is_water,
-};
+use crate::molecule::chemistry::{amino_acid_type, is_amino_acid, is_nucleotide, is_water};
 
 /// Lines of `#`, a header, then symbol, kind, radius, distance and charge.
 const TABLE: &str = include_str!("elements.csv");

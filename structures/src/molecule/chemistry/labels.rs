@@ -5,13 +5,10 @@
 //! nitrogen that has no proton, and so is neutral with its proton on the other; between two metals it has none. If a
 //! residue's name says its state (`CYM`, `HID`, `HIP`, ...), the name decides.
 
-use crate::molecule::chemistry::charges::{
-    Charges, backbone, cofactor, ion, nucleotide, side_chain,
+use crate::molecule::chemistry::{
+    Charges, backbone, cofactor, ion, is_hard, is_metal, known_atom, nucleotide, side_chain_charges,
 };
-use crate::molecule::chemistry::elements::{is_hard, is_metal};
-use crate::molecule::chemistry::residues::known_atom;
-use crate::molecule::model::groups::{GroupKind, Residue, residues};
-use crate::molecule::model::molecule::{Atom, Molecule, squared_distance};
+use crate::molecule::model::{Atom, GroupKind, Molecule, Residue, residues, squared_distance};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -134,7 +131,7 @@ impl Molecule {
         match residue.kind {
             GroupKind::AminoAcid | GroupKind::ModifiedResidue => {
                 self.set(residue, backbone(name), labels);
-                if let Some(charges) = side_chain(bound.unwrap_or(name), ph) {
+                if let Some(charges) = side_chain_charges(bound.unwrap_or(name), ph) {
                     return self.set_group(residue, charges, labels);
                 }
             }
@@ -194,7 +191,7 @@ impl Molecule {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::molecule::Format;
+    use crate::molecule::model::Format;
 
     fn atom(name: &str, residue: &str, number: i64, position: [f64; 3]) -> Atom {
         Atom {

@@ -17,12 +17,11 @@
 
 use std::borrow::Cow;
 
-use crate::molecule::chemistry::charges::is_modified;
-use crate::molecule::chemistry::elements::column_symbol;
-use crate::molecule::chemistry::residues::{
-    amino_acid_type, base, is_amino_acid, is_water, parent, side_chains, standard_atom_name,
+use crate::molecule::chemistry::{
+    amino_acid_type, base, column_symbol, is_amino_acid, is_modified, is_water, parent,
+    side_chains, standard_atom_name,
 };
-use crate::molecule::model::molecule::Atom;
+use crate::molecule::model::Atom;
 
 /// The plain name of an atom: `'` where files from before the remediation of 2007 have `*` in a sugar, and `OP1` for
 /// their `O1P`.

@@ -18,28 +18,11 @@
 //!
 //! Few distinct radii matter: each is a class of the lifted axis and costs time.
 
-use crate::molecule::chemistry::elements::{element, is_hydrogen};
-use crate::molecule::chemistry::residues::{
-    AtomType, amino_acid_type, backbone_type, nucleotide_type,
+use crate::molecule::chemistry::residues::{C3H1, N, O2H1, P, RadiusClass, S, SE};
+use crate::molecule::chemistry::{
+    amino_acid_type, backbone_type, element, is_hydrogen, nucleotide_type,
 };
-use crate::molecule::model::groups::GroupKind;
-
-impl AtomType {
-    /// Radius, in Å.
-    const fn radius(self) -> f64 {
-        match self {
-            Self::C3H0 => 1.61,
-            Self::C3H1 => 1.76,
-            Self::C4 => 1.88,
-            Self::N => 1.64,
-            Self::O1H0 => 1.42,
-            Self::O2H1 => 1.46,
-            Self::S => 1.77,
-            Self::Se => 1.90,
-            Self::P => 1.80,
-        }
-    }
-}
+use crate::molecule::model::GroupKind;
 
 /// Radius of all other elements, in Å: in the middle of UFF's metals.
 const OTHER: f64 = 1.7;
@@ -56,9 +39,9 @@ pub(crate) fn radius(residue_name: &str, atom_name: &str, element: &str, kind: G
             _ => None,
         })
         // A name in the tables is not enough where the element says otherwise.
-        .filter(|atom_type| element_of(*atom_type) == element)
+        .filter(|class| class.element == element)
         .or_else(|| class_of_element(element))
-        .map_or_else(|| of_element(element), AtomType::radius)
+        .map_or_else(|| of_element(element), |class| class.radius)
 }
 
 /// Radius of an atom beside whose kind hydrogens are atoms of their own, in Å.
@@ -66,27 +49,10 @@ pub(crate) fn all_atom_radius(symbol: &str) -> f64 {
     of_element(if is_hydrogen(symbol) { "H" } else { symbol })
 }
 
-const fn element_of(kind: AtomType) -> &'static str {
-    match kind {
-        AtomType::C3H0 | AtomType::C3H1 | AtomType::C4 => "C",
-        AtomType::N => "N",
-        AtomType::O1H0 | AtomType::O2H1 => "O",
-        AtomType::S => "S",
-        AtomType::Se => "Se",
-        AtomType::P => "P",
-    }
-}
-
-fn class_of_element(element: &str) -> Option<AtomType> {
-    match element {
-        "C" => Some(AtomType::C3H1),
-        "N" => Some(AtomType::N),
-        "O" => Some(AtomType::O2H1),
-        "S" => Some(AtomType::S),
-        "Se" => Some(AtomType::Se),
-        "P" => Some(AtomType::P),
-        _ => None,
-    }
+/// The class of an atom whose hydrogens are not known.
+fn class_of_element(element: &str) -> Option<&'static RadiusClass> {
+    let classes = [&C3H1, &N, &O2H1, &S, &SE, &P];
+    classes.into_iter().find(|class| class.element == element)
 }
 
 /// Radius of an element that has no class: Bondi's, or half of UFF's distance.

@@ -6,7 +6,7 @@
 
 use std::sync::LazyLock;
 
-use crate::molecule::chemistry::names::plain_atom_name;
+use crate::molecule::chemistry::plain_atom_name;
 
 /// Lines of `#`, a header, then residue, atom, class, contact type and kind.
 const TABLE: &str = include_str!("amino_acids.csv");
@@ -17,43 +17,45 @@ pub const CONTACT_TYPES: [&str; 18] = [
     "YCZ", "FCZ", "LCD", "CSG",
 ];
 
-/// Radius classes of Tsai, Taylor, Chothia & Gerstein, J. Mol. Biol. 290 (1999) 253-266: element, number of bonds (4:
+/// A radius class of Tsai, Taylor, Chothia & Gerstein, J. Mol. Biol. 290 (1999) 253-266: element, number of bonds (4:
 /// tetrahedral, 3: trigonal carbon), number of hydrogens.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum AtomType {
-    /// Carbonyl, carboxyl and aromatic carbon without hydrogen.
-    C3H0,
-    /// Aromatic carbon with hydrogen.
-    C3H1,
-    /// Aliphatic carbon: CH, CH2 and CH3 have the same radius.
-    C4,
-    /// Nitrogen of any kind: all have the same radius.
-    N,
-    /// Carbonyl and carboxyl oxygen.
-    O1H0,
-    /// Hydroxyl oxygen; ether and ester oxygen of nucleotides and sugars too.
-    O2H1,
-    /// Thiol and thioether sulphur.
-    S,
-    /// Selenium of selenocysteine and selenomethionine.
-    Se,
-    /// Phosphorus of phosphates.
-    P,
+#[derive(Debug, PartialEq)]
+pub(crate) struct RadiusClass {
+    name: &'static str,
+    pub(crate) element: &'static str,
+    /// United-atom radius, in Å.
+    pub(crate) radius: f64,
 }
 
-use AtomType::{C3H0, C3H1, C4, N, O1H0, O2H1, P, S, Se};
+const fn class(name: &'static str, element: &'static str, radius: f64) -> RadiusClass {
+    RadiusClass {
+        name,
+        element,
+        radius,
+    }
+}
 
-/// Classes by their names in the table.
-const CLASSES: [(&str, AtomType); 8] = [
-    ("C3H0", C3H0),
-    ("C3H1", C3H1),
-    ("C4", C4),
-    ("N", N),
-    ("O1H0", O1H0),
-    ("O2H1", O2H1),
-    ("S", S),
-    ("Se", Se),
-];
+/// Carbonyl, carboxyl and aromatic carbon without hydrogen.
+pub(crate) static C3H0: RadiusClass = class("C3H0", "C", 1.61);
+/// Aromatic carbon with hydrogen.
+pub(crate) static C3H1: RadiusClass = class("C3H1", "C", 1.76);
+/// Aliphatic carbon: CH, CH2 and CH3 have the same radius.
+pub(crate) static C4: RadiusClass = class("C4", "C", 1.88);
+/// Nitrogen of any kind: all have the same radius.
+pub(crate) static N: RadiusClass = class("N", "N", 1.64);
+/// Carbonyl and carboxyl oxygen.
+pub(crate) static O1H0: RadiusClass = class("O1H0", "O", 1.42);
+/// Hydroxyl oxygen; ether and ester oxygen of nucleotides and sugars too.
+pub(crate) static O2H1: RadiusClass = class("O2H1", "O", 1.46);
+/// Thiol and thioether sulphur.
+pub(crate) static S: RadiusClass = class("S", "S", 1.77);
+/// Selenium of selenocysteine and selenomethionine.
+pub(crate) static SE: RadiusClass = class("Se", "Se", 1.90);
+/// Phosphorus of phosphates.
+pub(crate) static P: RadiusClass = class("P", "P", 1.80);
+
+/// Classes of the table's atoms.
+static CLASSES: [&RadiusClass; 8] = [&C3H0, &C3H1, &C4, &N, &O1H0, &O2H1, &S, &SE];
 
 /// Number of backbone atoms, which come first in every residue of the table.
 const BACKBONE: usize = 5;
@@ -62,7 +64,7 @@ const BACKBONE: usize = 5;
 #[derive(Debug)]
 pub(crate) struct KnownAtom {
     pub(crate) name: &'static str,
-    pub(crate) class: AtomType,
+    pub(crate) class: &'static RadiusClass,
     /// Place in [`CONTACT_TYPES`].
     pub(crate) contact: u8,
     /// Place in [`atom_kinds`].
@@ -88,12 +90,11 @@ static AMINO_ACIDS: LazyLock<AminoAcids> = LazyLock::new(|| {
         if !kinds.contains(&kind) {
             kinds.push(kind);
         }
-        let class = CLASSES.iter().find(|(known, _)| *known == class);
+        let class = CLASSES.iter().find(|known| known.name == class);
         let contact = CONTACT_TYPES.iter().position(|known| *known == contact);
         let kind = kinds.iter().position(|known| *known == kind);
         let place = |place: Option<usize>| u8::try_from(place?).ok();
-        let (Some(&(_, class)), Some(contact), Some(kind)) = (class, place(contact), place(kind))
-        else {
+        let (Some(&class), Some(contact), Some(kind)) = (class, place(contact), place(kind)) else {
             no_row(line)
         };
         let atom = KnownAtom {
@@ -173,12 +174,12 @@ pub(crate) fn known_atom(residue_name: &str, atom_name: &str) -> Option<&'static
 }
 
 /// Radius class of a heavy atom of a standard amino acid.
-pub(crate) fn amino_acid_type(residue_name: &str, atom_name: &str) -> Option<AtomType> {
+pub(crate) fn amino_acid_type(residue_name: &str, atom_name: &str) -> Option<&'static RadiusClass> {
     known_atom(residue_name, atom_name).map(|atom| atom.class)
 }
 
 /// Radius class of a heavy atom of an amino acid's backbone, whatever the residue.
-pub(crate) fn backbone_type(atom_name: &str) -> Option<AtomType> {
+pub(crate) fn backbone_type(atom_name: &str) -> Option<&'static RadiusClass> {
     let name = standard_atom_name("", atom_name);
     let mut backbone = atoms("GLY")?.iter();
     backbone
@@ -238,25 +239,25 @@ pub fn one_letter(residue_name: &str) -> char {
 
 /// Atom type of a heavy atom of a standard nucleotide, in the classes that carry over to RNA and DNA: Voss & Gerstein,
 /// J. Mol. Biol. 346 (2005) 477-492 (NucProt).
-pub(crate) fn nucleotide_type(residue_name: &str, atom_name: &str) -> Option<AtomType> {
+pub(crate) fn nucleotide_type(residue_name: &str, atom_name: &str) -> Option<&'static RadiusClass> {
     let base = base(residue_name)?;
     let name = plain_atom_name(atom_name);
     if name.starts_with('P') {
-        return Some(P);
+        return Some(&P);
     }
     if matches!(name.as_ref(), "OP1" | "OP2") {
-        return Some(O1H0);
+        return Some(&O1H0);
     }
     if name.ends_with('\'') || name == "OP3" {
-        return Some(if name.starts_with('C') { C4 } else { O2H1 });
+        return Some(if name.starts_with('C') { &C4 } else { &O2H1 });
     }
     match (base, name.as_ref()) {
-        (_, "C7" | "C5M") => Some(C4),
-        ("A" | "I", "C2") | ("A" | "G" | "I", "C8") => Some(C3H1),
-        ("C" | "U", "C5") | ("C" | "U" | "T", "C6") => Some(C3H1),
-        (_, name) if name.starts_with('C') => Some(C3H0),
-        (_, name) if name.starts_with('N') => Some(N),
-        (_, name) if name.starts_with('O') => Some(O1H0),
+        (_, "C7" | "C5M") => Some(&C4),
+        ("A" | "I", "C2") | ("A" | "G" | "I", "C8") => Some(&C3H1),
+        ("C" | "U", "C5") | ("C" | "U" | "T", "C6") => Some(&C3H1),
+        (_, name) if name.starts_with('C') => Some(&C3H0),
+        (_, name) if name.starts_with('N') => Some(&N),
+        (_, name) if name.starts_with('O') => Some(&O1H0),
         _ => None,
     }
 }
@@ -306,10 +307,10 @@ mod tests {
 
     #[test]
     fn variants_share_their_parents_atoms() {
-        assert_eq!(amino_acid_type("HSD", "CE1"), Some(C3H1));
-        assert_eq!(amino_acid_type("CYX", "SG"), Some(S));
-        assert_eq!(amino_acid_type("ILE", "CD"), Some(C4));
-        assert_eq!(amino_acid_type("LYS", "OT2"), Some(O1H0));
+        assert_eq!(amino_acid_type("HSD", "CE1"), Some(&C3H1));
+        assert_eq!(amino_acid_type("CYX", "SG"), Some(&S));
+        assert_eq!(amino_acid_type("ILE", "CD"), Some(&C4));
+        assert_eq!(amino_acid_type("LYS", "OT2"), Some(&O1H0));
         assert_eq!(amino_acid_type("LYS", "ZZ"), None);
         assert_eq!(amino_acid_type("HEM", "CA"), None);
     }
@@ -325,11 +326,11 @@ mod tests {
         for name in ["ALA", "D", "R", "N", "DAL", "GOL", "AA"] {
             assert!(!is_nucleotide(name), "{name}");
         }
-        assert_eq!(nucleotide_type("DT", "C5M"), Some(C4));
-        assert_eq!(nucleotide_type("DT", "C5"), Some(C3H0));
-        assert_eq!(nucleotide_type("U", "C5"), Some(C3H1));
-        assert_eq!(nucleotide_type("A", "C5*"), Some(C4));
-        assert_eq!(nucleotide_type("A", "O2'"), Some(O2H1));
+        assert_eq!(nucleotide_type("DT", "C5M"), Some(&C4));
+        assert_eq!(nucleotide_type("DT", "C5"), Some(&C3H0));
+        assert_eq!(nucleotide_type("U", "C5"), Some(&C3H1));
+        assert_eq!(nucleotide_type("A", "C5*"), Some(&C4));
+        assert_eq!(nucleotide_type("A", "O2'"), Some(&O2H1));
     }
 
     #[test]

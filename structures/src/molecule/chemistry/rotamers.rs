@@ -4,16 +4,16 @@
 //! row of the chain N, CA, CB, ..., counted from its k-th atom. Alanine and glycine have none; proline's are left out,
 //! because its ring does not turn.
 //!
-//! The table of rotamers beside this file is an excerpt of the 2010 Backbone-Dependent Rotamer Library: Shapovalov & Dunbrack, Structure 19 (2011)
-//! 844-858, free under the Open Data Commons Attribution License. It holds nodes every 40 degrees of phi and psi, and
-//! rotamers of at least 2%. Of amides, carboxylates and rings the library has a rotamer every 30
-//! degrees or so of the last angle, each with its own probability.
+//! The table of rotamers beside this file is an excerpt of the 2010 Backbone-Dependent Rotamer Library: Shapovalov &
+//! Dunbrack, Structure 19 (2011) 844-858, free under the Open Data Commons Attribution License. It holds nodes every 40
+//! degrees of phi and psi, and rotamers of at least 2%. For amides, carboxylates and rings the library has a rotamer
+//! every 30 degrees or so of the last angle, each with its own probability.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-use crate::molecule::chemistry::residues::side_chain;
+use crate::molecule::chemistry::side_chain;
 
 /// Most chi angles of a residue.
 pub(crate) const MAX_CHI: usize = 4;

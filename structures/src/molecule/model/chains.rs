@@ -5,9 +5,8 @@ use std::collections::BTreeSet;
 
 use serde::Serialize;
 
-use crate::molecule::chemistry::charged_termini::{BOND, Caps};
-use crate::molecule::model::groups::{Residue, ResidueKey, residues};
-use crate::molecule::model::molecule::{Atom, Molecule, squared_distance};
+use crate::molecule::chemistry::{BOND, Caps};
+use crate::molecule::model::{Atom, Molecule, Residue, ResidueKey, residues, squared_distance};
 use crate::neighbours::SpatialHash;
 
 /// Largest distance of adjacent residues, in Å.
@@ -254,8 +253,7 @@ impl Molecule {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::groups::residue_runs;
-    use crate::molecule::model::molecule::Format;
+    use crate::molecule::model::{Format, residue_runs};
     use crate::test_support::{capped, example, without};
 
     /// The places of the residues near ends, all of whose atoms must be there.

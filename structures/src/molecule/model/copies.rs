@@ -1,7 +1,7 @@
 //! The copies of one molecule that a file holds side by side, atom by atom.
 
 use crate::Error;
-use crate::molecule::model::molecule::{Atom, Molecule};
+use crate::molecule::model::{Atom, Molecule};
 use std::collections::HashMap;
 
 /// Fewest atoms that copies must share.
@@ -65,7 +65,7 @@ fn is_backbone(atom: &Atom) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::molecule::Format;
+    use crate::molecule::model::Format;
 
     /// Residues 1 to `residues` of each chain, x their number and y the chain's place.
     fn molecule(chains: &str, residues: i64) -> Molecule {
@@ -75,15 +75,9 @@ mod tests {
                 residue_name: "ALA".to_owned(),
                 chain: chain.to_string(),
                 residue_number,
-                insertion_code: None,
-                alternate_location: None,
                 element: "C".to_owned(),
                 position: [residue_number as f64, f64::from(place), 0.0],
-                occupancy: 1.0,
-                b_factor: 0.0,
-                hetero: false,
-                radius: 1.7,
-                line: 0,
+                ..Atom::default()
             })
         });
         Molecule::new(atoms.collect(), Format::Pdb)

@@ -5,10 +5,10 @@ use std::collections::{HashMap, HashSet};
 use std::fmt;
 use std::ops::Range;
 
-use crate::molecule::chemistry::elements::is_metal;
-use crate::molecule::chemistry::names::{known_as, links_nucleotides, plain_atom_name};
-use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide};
-use crate::molecule::model::molecule::{Atom, show_chain};
+use crate::molecule::chemistry::{
+    is_amino_acid, is_metal, is_nucleotide, known_as, links_nucleotides, plain_atom_name,
+};
+use crate::molecule::model::{Atom, show_chain};
 use serde::Serialize;
 
 /// Kind of a residue, detected from its name and atoms.
@@ -267,15 +267,9 @@ mod tests {
             residue_name: residue.to_owned(),
             chain: "A".to_owned(),
             residue_number: number,
-            insertion_code: None,
-            alternate_location: None,
             element: "C".to_owned(),
             position: [0.0; 3],
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.7,
-            line: 1,
+            ..Atom::default()
         };
         let chain = [
             atom("ALA", 1, "N"),

@@ -2,8 +2,8 @@
 
 use serde::Serialize;
 
-use crate::molecule::chemistry::elements;
-use crate::molecule::model::report::ReadReport;
+use crate::molecule::chemistry::is_hydrogen;
+use crate::molecule::model::ReadReport;
 
 /// File format of a structure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -60,7 +60,7 @@ impl Atom {
     /// Whether this is hydrogen of any mass, which only molecules read with
     /// [`Hydrogens::Keep`](crate::molecule::Hydrogens::Keep) have.
     pub fn is_hydrogen(&self) -> bool {
-        elements::is_hydrogen(&self.element)
+        is_hydrogen(&self.element)
     }
 }
 

@@ -5,9 +5,8 @@
 //! atoms carry (Baker & Hubbard, Prog. Biophys. Mol. Biol. 44 (1984) 97-179). Histidine's nitrogens do both, because
 //! files do not show its protons. So do oxygens and nitrogens of other molecules.
 
-use crate::molecule::chemistry::residues::{is_amino_acid, parent, standard_atom_name};
-use crate::molecule::model::groups::residues;
-use crate::molecule::model::molecule::{Atom, Molecule};
+use crate::molecule::chemistry::{is_amino_acid, parent, standard_atom_name};
+use crate::molecule::model::{Atom, Molecule, residues};
 use crate::neighbours::{CellList, Member};
 use crate::polar_atom::PolarAtom;
 

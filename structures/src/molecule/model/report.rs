@@ -4,9 +4,7 @@ use std::collections::{BTreeMap, HashMap};
 use std::fmt;
 use std::path::Path;
 
-use crate::molecule::model::chains::CutEnd;
-use crate::molecule::model::groups::{GroupKind, Residue};
-use crate::molecule::model::molecule::{Atom, Format, count, show_chain};
+use crate::molecule::model::{Atom, CutEnd, Format, GroupKind, Residue, count, show_chain};
 use serde::Serialize;
 
 /// Report on reading one file.
@@ -152,9 +150,6 @@ pub struct Altered {
     pub alternate_locations: Vec<AlternateChoice>,
     /// Models that were not read.
     pub models_ignored: usize,
-    /// Whether all models lie beside one another, so that those that were not read are parts of what was.
-    #[serde(skip)]
-    pub models_are_parts: bool,
 }
 
 /// The alternate location chosen for a residue.

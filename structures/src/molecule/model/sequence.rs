@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use crate::molecule::chemistry::residues::one_letter;
-use crate::molecule::model::groups::{Residue, residue_runs};
-use crate::molecule::model::molecule::Molecule;
+use crate::molecule::chemistry::one_letter;
+use crate::molecule::model::{Molecule, Residue, residue_runs};
 
 /// A run of amino acids that stand in one chain of a file, one after another.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -63,8 +62,7 @@ fn peptide_residue(residue: &Residue<'_>) -> PeptideResidue {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::molecule::Atom;
-    use crate::molecule::model::molecule::Format;
+    use crate::molecule::model::{Atom, Format};
 
     #[test]
     fn chains_are_runs_of_amino_acids_under_one_name() {
@@ -74,14 +72,9 @@ mod tests {
             chain: chain.to_owned(),
             residue_number: number,
             insertion_code: insertion,
-            alternate_location: None,
             element: "C".to_owned(),
             position: [0.0; 3],
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.9,
-            line: 1,
+            ..Atom::default()
         };
         let atoms = vec![
             residue("H", "GLY", 52, None),

@@ -4,12 +4,12 @@ use std::collections::HashMap;
 
 use serde::Serialize;
 
-use crate::molecule::chemistry::charged_termini::BOND;
-use crate::molecule::chemistry::elements::is_metal;
-use crate::molecule::chemistry::residues::{backbone_type, parent, standard_atom_name};
-use crate::molecule::chemistry::rotamers::ChiAngles;
-use crate::molecule::model::groups::{Residue, residues};
-use crate::molecule::model::molecule::{Atom, Molecule, cross, dot, minus, squared_distance};
+use crate::molecule::chemistry::{
+    BOND, ChiAngles, backbone_type, is_metal, parent, standard_atom_name,
+};
+use crate::molecule::model::{
+    Atom, Molecule, Residue, cross, dot, minus, residues, squared_distance,
+};
 use crate::neighbours::{CellList, Member};
 
 /// phi and psi in radians where an end of a chain leaves one undefined: those of an extended chain, -75 and 145

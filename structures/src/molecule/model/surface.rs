@@ -1,7 +1,7 @@
 //! Solvent-accessible surface area of each atom (Lee & Richards, J. Mol. Biol. 55 (1971) 379-400), by counting points
 //! on the atoms' expanded spheres that no other sphere covers (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371).
 
-use crate::molecule::model::molecule::{Atom, Molecule, squared_distance};
+use crate::molecule::model::{Atom, Molecule, squared_distance};
 use crate::neighbours::{CoveringBalls, SpatialHash};
 use std::collections::HashSet;
 
@@ -107,7 +107,7 @@ pub fn spiral(count: usize) -> Vec<[f64; 3]> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::molecule::Format;
+    use crate::molecule::model::Format;
     use std::f64::consts::PI;
 
     fn balls(places: &[([f64; 3], f64)]) -> Molecule {

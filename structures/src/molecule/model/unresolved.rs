@@ -9,9 +9,9 @@ use rand_pcg::rand_core::Rng;
 use serde::{Serialize, Serializer};
 
 use crate::Conformers;
-use crate::molecule::model::chains::{Chain, Gap};
-use crate::molecule::model::groups::{Residue, residues};
-use crate::molecule::model::molecule::{Atom, Molecule, cross, minus, squared_distance};
+use crate::molecule::model::{
+    Atom, Chain, Gap, Molecule, Residue, cross, minus, residues, squared_distance,
+};
 use crate::neighbours::SpatialHash;
 
 /// Residues sampled beyond a terminus: as many as count as flexible on its resolved side.

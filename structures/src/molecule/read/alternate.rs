@@ -2,11 +2,10 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use crate::molecule::model::groups::{Place, number_text, residue_key};
-use crate::molecule::model::molecule::{Atom, squared_distance};
-use crate::molecule::model::report::{AlternateChoice, DropKind};
-use crate::molecule::read::Drops;
-use crate::molecule::read::policy::AlternateLocation;
+use crate::molecule::model::{
+    AlternateChoice, Atom, DropKind, Place, number_text, residue_key, squared_distance,
+};
+use crate::molecule::read::{AlternateLocation, Drops};
 
 /// A position in a chain. The residue's name is left out: alternate locations may differ in it (microheterogeneity), and
 /// one choice must hold for both names.

@@ -7,14 +7,11 @@
 use std::collections::{HashMap, HashSet};
 
 use crate::Error;
-use crate::molecule::chemistry::names::links_nucleotides;
-use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide};
-use crate::molecule::model::molecule::{Atom, count};
-use crate::molecule::model::report::{BuiltAssembly, DropKind};
-use crate::molecule::read::Drops;
+use crate::molecule::chemistry::{is_amino_acid, is_nucleotide, links_nucleotides};
+use crate::molecule::model::{Atom, BuiltAssembly, DropKind, count};
 use crate::molecule::read::mmcif::Row;
 use crate::molecule::read::models::Images;
-use crate::molecule::read::record::{Record, is_place, number};
+use crate::molecule::read::{Drops, Record, is_place, number};
 
 /// Most atoms of an assembly: the largest capsids have some ten million.
 const MAX_ATOMS: usize = 50_000_000;

@@ -18,11 +18,10 @@
 //! | tips of side chains against the backbone | lower | higher |
 //! | atoms with many others about them | higher | lower |
 
-use crate::molecule::model::groups::{Residue, residues};
-use crate::molecule::model::molecule::{Atom, show_chain, squared_distance};
-use crate::molecule::model::report::{Confidence, ConfidenceSource, DropKind};
-use crate::molecule::read::Drops;
-use crate::molecule::read::policy::ReadOptions;
+use crate::molecule::model::{
+    Atom, Confidence, ConfidenceSource, DropKind, Residue, residues, show_chain, squared_distance,
+};
+use crate::molecule::read::{Drops, ReadOptions};
 use crate::neighbours::SpatialHash;
 use std::collections::HashSet;
 

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 use crate::Error;
-use crate::molecule::model::residue_selection::ResidueSelection;
+use crate::molecule::model::ResidueSelection;
 
 /// A structure file and the chains and residues requested of it.
 #[derive(Clone, Debug, PartialEq, Eq)]

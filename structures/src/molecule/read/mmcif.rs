@@ -7,15 +7,14 @@
 use std::collections::HashMap;
 
 use crate::Error;
-use crate::molecule::chemistry::elements::NameColumn;
-use crate::molecule::model::molecule::{Atom, count};
+use crate::molecule::chemistry::NameColumn;
+use crate::molecule::model::{Atom, count};
 use crate::molecule::read::assembly::{GENERATORS, OPERATORS, assemblies};
 use crate::molecule::read::cif::{Kind, Token, tokens};
 use crate::molecule::read::confidence::{Provenance, is_measured};
 use crate::molecule::read::pdbtbx::{MMCIF_HEADER, NO_ALTERNATE, SHOWN_NUMBERS};
-use crate::molecule::read::policy::ModelChoice;
-use crate::molecule::read::record::{
-    COORDINATE, FileContents, Record, coordinate, field_error, number,
+use crate::molecule::read::{
+    COORDINATE, FileContents, ModelChoice, Record, coordinate, field_error, number,
 };
 
 /// Category of the atom table, in lower case; tags are case-insensitive.

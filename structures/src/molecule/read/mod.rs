@@ -1,33 +1,36 @@
 //! Reading a structure, from path to molecule.
 
-pub(crate) mod alternate;
-pub(crate) mod assembly;
-pub(crate) mod cif;
-pub(crate) mod confidence;
-pub(crate) mod input;
-pub(crate) mod mmcif;
-pub(crate) mod models;
-pub(crate) mod pdb;
-pub(crate) mod pdb_columns;
-pub(crate) mod pdbtbx;
-pub(crate) mod policy;
-pub(crate) mod pseudo_atoms;
-pub(crate) mod record;
-pub(crate) mod select;
-pub(crate) mod source;
-pub(crate) mod warnings;
+mod alternate;
+mod assembly;
+mod cif;
+mod confidence;
+mod input;
+mod mmcif;
+mod models;
+mod pdb;
+mod pdb_columns;
+mod pdbtbx;
+mod policy;
+mod pseudo_atoms;
+mod record;
+mod select;
+mod source;
+mod warnings;
+
+pub use self::confidence::LOW;
+pub use self::input::InputSpec;
+pub use self::policy::{AlternateLocation, Hetatm, Hydrogens, ModelChoice, ReadOptions, Waters};
+pub use self::source::file_bytes;
+
+use self::input::bad_selection;
+use self::models::Relation;
+use self::record::{COORDINATE, FileContents, Record, coordinate, field_error, is_place, number};
 
 use std::path::Path;
 
 use crate::Error;
-use crate::molecule::chemistry::radii;
-use crate::molecule::model::groups::residues;
-use crate::molecule::model::molecule::{Atom, Format, Molecule};
-use crate::molecule::model::report::{DropKind, ReadReport};
-use crate::molecule::read::input::InputSpec;
-use crate::molecule::read::models::Relation;
-use crate::molecule::read::policy::{ModelChoice, ReadOptions};
-use crate::molecule::read::record::{FileContents, Record};
+use crate::molecule::chemistry::{all_atom_radius, radius};
+use crate::molecule::model::{Atom, DropKind, Format, Molecule, ReadReport, residues};
 
 /// An atom of the model that was read, and what became of it.
 #[derive(Clone, Debug, PartialEq)]
@@ -242,7 +245,6 @@ fn resolve_models(
     }
     report.altered.models_ignored = contents.models - 1;
     if relation == Relation::Parts {
-        report.altered.models_are_parts = true;
         let read = records.first().map_or(1, |record| record.model);
         let warning = models::warning(contents.models, read, contents.ignored.len());
         report.warnings.push(warning);
@@ -261,8 +263,8 @@ fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molec
         for &index in &group.atoms {
             let Atom { name, element, .. } = &atoms[index];
             radii[index] = match all_atom {
-                true => radii::all_atom_radius(element),
-                false => radii::radius(group.known_as, name, element, group.kind),
+                true => all_atom_radius(element),
+                false => radius(group.known_as, name, element, group.kind),
             };
         }
     }

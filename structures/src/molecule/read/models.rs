@@ -4,11 +4,9 @@
 //! of a complex with a partner in each lie beside one another: two atoms that are not bonded keep a distance of some
 //! 3 Å. So the models of a file are parts where hardly any atom shares a cell of 2 Å with an atom of another model.
 
-use crate::molecule::model::groups::residue_key;
-use crate::molecule::model::molecule::{count, squared_distance};
-use crate::molecule::model::report::JoinedModels;
+use crate::molecule::model::{JoinedModels, count, residue_key, squared_distance};
+use crate::molecule::read::Record;
 use crate::molecule::read::assembly::copy_name;
-use crate::molecule::read::record::Record;
 use crate::neighbours::SpatialHash;
 use crate::neighbours::cell::{Cell, cell_of};
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};

@@ -1,8 +1,8 @@
 //! Reading of PDB files: fixed columns, wwPDB format 3.3, "Coordinate Section".
 
 use crate::Error;
-use crate::molecule::chemistry::elements::NameColumn;
-use crate::molecule::model::molecule::{Atom, count};
+use crate::molecule::chemistry::NameColumn;
+use crate::molecule::model::{Atom, count};
 use crate::molecule::read::assembly::Remark350;
 use crate::molecule::read::confidence::{Provenance, is_measured};
 use crate::molecule::read::pdb_columns::{
@@ -10,11 +10,10 @@ use crate::molecule::read::pdb_columns::{
     residue_number, segid,
 };
 use crate::molecule::read::pdbtbx::{NO_ALTERNATE, SHOWN_NUMBERS};
-use crate::molecule::read::policy::ModelChoice;
-use crate::molecule::read::record::{
-    COORDINATE, FileContents, Record, coordinate, field_error, number,
-};
 use crate::molecule::read::source::lines;
+use crate::molecule::read::{
+    COORDINATE, FileContents, ModelChoice, Record, coordinate, field_error, number,
+};
 
 /// Record names that show a file to be PDB even where it holds no atom.
 const RECORDS: [&str; 14] = [

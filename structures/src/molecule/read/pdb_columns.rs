@@ -5,8 +5,8 @@
 use std::borrow::Cow;
 use std::collections::HashSet;
 
-use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide, is_water};
-use crate::molecule::read::record::number;
+use crate::molecule::chemistry::{is_amino_acid, is_nucleotide, is_water};
+use crate::molecule::read::number;
 use crate::molecule::read::source::lines;
 
 /// Columns of a record from `start` to before `end`, as far as it has them; nothing where a character is cut.

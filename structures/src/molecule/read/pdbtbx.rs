@@ -26,8 +26,8 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use pdbtbx::{ContainsAtomConformer, Context, PDB, PDBError, ReadOptions, StrictnessLevel};
 
 use crate::Error;
-use crate::molecule::model::molecule::Format;
-use crate::molecule::read::record::{FileContents, Record};
+use crate::molecule::model::Format;
+use crate::molecule::read::{FileContents, Record};
 
 /// Alternate location given to pdbtbx for all atoms, so that it does not copy them into other conformers.
 pub(crate) const NO_ALTERNATE: char = '~';

@@ -5,6 +5,8 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error as ValueError, StrDeserializer};
 use serde::{Deserialize, Serialize};
 
 use crate::Error;
@@ -116,7 +118,7 @@ impl TryFrom<WrittenModel> for ModelChoice {
 
 /// Policy on waters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(rename_all = "kebab-case")]
 pub enum Waters {
     /// They are dropped.
     #[default]
@@ -127,7 +129,7 @@ pub enum Waters {
 
 /// Policy on HETATM records other than water.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(rename_all = "kebab-case")]
 pub enum Hetatm {
     /// Known buffer and cryo additives are dropped (whatever their record), all else is kept.
     #[default]
@@ -141,7 +143,7 @@ pub enum Hetatm {
 
 /// Policy on hydrogens.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(rename_all = "kebab-case")]
 pub enum Hydrogens {
     /// They are dropped: united-atom radii stand for them.
     #[default]
@@ -166,49 +168,27 @@ fn none_of(choices: &str, text: &str) -> Error {
     Error::input(format!("'{text}' is none of {choices}")).help(format!("give one of {choices}"))
 }
 
-/// Reads and writes a policy as one of a few words.
+/// Reads and writes policies as in records: one of a few words.
 macro_rules! words {
-    ($policy:ty, $choices:literal, $($value:path = $word:literal),+) => {
+    ($($policy:ty: $choices:literal),+) => {$(
         impl FromStr for $policy {
             type Err = Error;
 
             fn from_str(text: &str) -> Result<Self, Error> {
-                match text {
-                    $($word => Ok($value),)+
-                    _ => Err(none_of($choices, text)),
-                }
+                let word: StrDeserializer<'_, ValueError> = text.into_deserializer();
+                Self::deserialize(word).map_err(|_| none_of($choices, text))
             }
         }
 
         impl fmt::Display for $policy {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(match self {
-                    $($value => $word,)+
-                })
+                self.serialize(f)
             }
         }
-    };
+    )+};
 }
 
-words!(
-    Waters,
-    "drop and keep",
-    Waters::Drop = "drop",
-    Waters::Keep = "keep"
-);
-words!(
-    Hetatm,
-    "no-additives, keep and drop",
-    Hetatm::NoAdditives = "no-additives",
-    Hetatm::Keep = "keep",
-    Hetatm::Drop = "drop"
-);
-words!(
-    Hydrogens,
-    "drop and keep",
-    Hydrogens::Drop = "drop",
-    Hydrogens::Keep = "keep"
-);
+words!(Waters: "drop and keep", Hetatm: "no-additives, keep and drop", Hydrogens: "drop and keep");
 
 impl FromStr for AlternateLocation {
     type Err = Error;
@@ -232,26 +212,19 @@ impl fmt::Display for AlternateLocation {
     }
 }
 
-/// Policies go into records as they stand on the command line.
-macro_rules! as_text {
-    ($($policy:ty),+) => {$(
-        impl From<$policy> for String {
-            fn from(policy: $policy) -> Self {
-                policy.to_string()
-            }
-        }
-
-        impl TryFrom<String> for $policy {
-            type Error = Error;
-
-            fn try_from(text: String) -> Result<Self, Error> {
-                text.parse()
-            }
-        }
-    )+};
+impl From<AlternateLocation> for String {
+    fn from(location: AlternateLocation) -> Self {
+        location.to_string()
+    }
 }
 
-as_text!(Waters, Hetatm, Hydrogens, AlternateLocation);
+impl TryFrom<String> for AlternateLocation {
+    type Error = Error;
+
+    fn try_from(text: String) -> Result<Self, Error> {
+        text.parse()
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -9,12 +9,12 @@
 
 use std::collections::HashMap;
 
-use crate::molecule::chemistry::elements::{NameColumn, column_symbol, resolve};
-use crate::molecule::chemistry::names::{is_site_name, mass_center};
-use crate::molecule::chemistry::residues::{amino_acid_type, is_amino_acid, is_water};
-use crate::molecule::model::groups::{ResidueKey, residue_key};
-use crate::molecule::model::molecule::{Atom, squared_distance};
-use crate::molecule::read::record::Record;
+use crate::molecule::chemistry::{
+    NameColumn, amino_acid_type, column_symbol, is_amino_acid, is_site_name, is_water, mass_center,
+    resolve,
+};
+use crate::molecule::model::{Atom, ResidueKey, residue_key, squared_distance};
+use crate::molecule::read::Record;
 
 /// Markers: residue name and the names of its atoms, digits behind them aside.
 const MARKERS: [(&str, &[&str]); 12] = [

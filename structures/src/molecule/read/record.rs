@@ -1,9 +1,8 @@
 //! Atoms as a file has them, and what the file says beside them.
 
 use crate::Error;
-use crate::molecule::chemistry::elements::NameColumn;
-use crate::molecule::model::molecule::Atom;
-use crate::molecule::model::report::{DropKind, ReadReport};
+use crate::molecule::chemistry::NameColumn;
+use crate::molecule::model::{Atom, DropKind, ReadReport};
 use crate::molecule::read::assembly::Assemblies;
 use crate::molecule::read::confidence::Provenance;
 

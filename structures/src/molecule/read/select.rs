@@ -4,22 +4,17 @@
 use std::collections::{BTreeSet, HashMap, HashSet};
 
 use crate::Error;
-use crate::molecule::chemistry::additives::is_additive;
-use crate::molecule::chemistry::elements::{NameColumn, Origin, Resolved, is_hydrogen, resolve};
-use crate::molecule::chemistry::names::known_as;
-use crate::molecule::chemistry::residues::{is_amino_acid, is_water};
-use crate::molecule::model::chains::cut_ends;
-use crate::molecule::model::groups::{ResidueKey, residue_key};
-use crate::molecule::model::molecule::{Atom, show_chain};
-use crate::molecule::model::report::DropKind;
-use crate::molecule::model::residue_selection::{Picked, ResidueSelection};
-use crate::molecule::read::Drops;
+use crate::molecule::chemistry::{
+    NameColumn, Origin, Resolved, is_additive, is_amino_acid, is_hydrogen, is_water, known_as,
+    resolve,
+};
+use crate::molecule::model::{
+    Atom, DropKind, Picked, ResidueKey, ResidueSelection, cut_ends, residue_key, show_chain,
+};
 use crate::molecule::read::alternate::choose;
 use crate::molecule::read::confidence::{Provenance, weigh};
-use crate::molecule::read::input::bad_selection;
-use crate::molecule::read::policy::{Hetatm, Hydrogens, ReadOptions, Waters};
 use crate::molecule::read::pseudo_atoms;
-use crate::molecule::read::record::Record;
+use crate::molecule::read::{Drops, Hetatm, Hydrogens, ReadOptions, Record, Waters, bad_selection};
 
 /// Applies all selections, and notes what they drop. Radii are left at zero: they need whole residues.
 pub(crate) fn select(

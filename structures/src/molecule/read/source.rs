@@ -10,7 +10,7 @@ use std::path::Path;
 use flate2::bufread::GzDecoder;
 
 use crate::Error;
-use crate::molecule::model::molecule::Format;
+use crate::molecule::model::Format;
 use crate::molecule::read::pdb_columns::atom_line;
 
 /// The first two bytes of every gzip stream (RFC 1952, section 2.3.1).

@@ -3,11 +3,9 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
-use crate::molecule::chemistry::charges::cofactor;
-use crate::molecule::chemistry::residues::{is_water, side_chain};
-use crate::molecule::model::groups::{GroupKind, Residue, residue_key};
-use crate::molecule::model::molecule::{
-    Atom, agreeing, count, examples, show_chain, squared_distance,
+use crate::molecule::chemistry::{cofactor, is_water, side_chain};
+use crate::molecule::model::{
+    Atom, GroupKind, Residue, agreeing, count, examples, residue_key, show_chain, squared_distance,
 };
 use crate::neighbours::SpatialHash;
 
@@ -349,7 +347,7 @@ fn on_top(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<(usize, usize, f64)> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::groups::residues;
+    use crate::molecule::model::residues;
 
     /// A residue with atoms 1.3 Å apart along x.
     fn residue(chain: &str, name: &str, number: i64, atoms: &[&str], y: f64) -> Vec<Atom> {

@@ -6,7 +6,7 @@ use std::fmt;
 use serde::{Serialize, Serializer};
 
 use crate::Error;
-use crate::molecule::model::molecule::{Format, Molecule, show_chain};
+use crate::molecule::model::{Format, Molecule, show_chain};
 use crate::molecule::write::does_not_fit;
 
 /// One of the molecules of a complex.

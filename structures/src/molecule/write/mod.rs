@@ -18,8 +18,7 @@ use std::io::{self, Write};
 pub use crate::molecule::write::chains::{ChainMap, ChainName, Partner};
 
 use crate::Error;
-use crate::molecule::model::groups::{GroupKind, residues};
-use crate::molecule::model::molecule::{Atom, Format, Molecule, show_chain};
+use crate::molecule::model::{Atom, Format, GroupKind, Molecule, residues, show_chain};
 
 /// An atom under the name that its chain has in the file.
 struct Row<'a> {
@@ -303,7 +302,7 @@ impl<'a, W: Write> ModelWriter<'a, W> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::read::policy::{ModelChoice, ReadOptions};
+    use crate::molecule::read::{ModelChoice, ReadOptions};
     use crate::molecule::{InputSpec, model_count, read_bytes};
 
     /// Each model reads back as the complex that was written, in either format.

@@ -1,5 +1,5 @@
 use super::*;
-use crate::molecule::model::molecule::Format;
+use crate::molecule::model::Format;
 use crate::molecule::{InputSpec, ReadOptions, read};
 use std::f64::consts::TAU;
 use std::path::Path;

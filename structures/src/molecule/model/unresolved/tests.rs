@@ -1,8 +1,7 @@
 //! Tests of unresolved residues and their conformers.
 
 use super::*;
-use crate::molecule::model::groups::residue_runs;
-use crate::molecule::model::molecule::Format;
+use crate::molecule::model::{Format, residue_runs};
 use crate::test_support::{capped, example, without};
 
 fn trypsin() -> Molecule {
