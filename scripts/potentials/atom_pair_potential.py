@@ -8,7 +8,7 @@ DIR is a benchmark folder (scripts/docked_pairs.py); the unbound proteins of the
 the statistics.
 
 Kinds are the atoms of each amino acid by themselves, those alike by symmetry as one
-(structures/src/molecule/chemistry/contact_types.csv). Counted are pairs of atoms whose residues are at least
+(structures/src/molecule/chemistry/amino_acids.csv). Counted are pairs of atoms whose residues are at least
 --separation places from each other in the file, in shells of 0.5 A about the table's distances, the first one down
 to 0.
 

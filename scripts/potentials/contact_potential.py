@@ -38,7 +38,7 @@ import numpy as np
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from docked_pairs import ROOT, check_known, find_part, fold, in_fold, names, read_text, select, write
 
-TYPES_FILE = ROOT / "structures/src/molecule/chemistry/contact_types.csv"
+TYPES_FILE = ROOT / "structures/src/molecule/chemistry/amino_acids.csv"
 TYPES = "N CA C O GCA CB KNZ KCD DOD RNH NNN RNE SOG HNE YCZ FCZ LCD CSG".split()
 TAPER = (5.0, 7.0)  # A, as in scoring/src/terms/effect/contact.rs
 RANGES = {

@@ -173,7 +173,7 @@ def main():
     table = read_table(ROOT / "scoring/src/terms/effect/contact_potential.csv")
     names = [row["type"] for row in table]
     potential = np.array([[float(row[name]) for name in names] for row in table])
-    kinds = read_table(ROOT / "structures/src/molecule/chemistry/contact_types.csv")
+    kinds = read_table(ROOT / "structures/src/molecule/chemistry/amino_acids.csv")
     types = {(row["residue"], row["atom"]): names.index(row["type"]) for row in kinds}
     poses = {
         (row["case"], row["pose"]): [float(value) for value in list(row.values())[2:]]

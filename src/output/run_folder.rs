@@ -11,7 +11,6 @@ use serde_json::Value;
 use crate::dock::memory::process;
 use crate::dock::outcome::DockOutcome;
 use crate::dock::plan::DockPlan;
-use crate::output::run_contacts::RunContacts;
 use crate::options::DockOptions;
 use crate::output::files::assemblies::{Surface, write_assemblies};
 use crate::output::files::complexes::write_complexes;
@@ -21,6 +20,7 @@ use crate::output::files::whole_file::to_json;
 use crate::output::records::manifest::{
     Chosen, EffectTime, Inputs, Machine, Manifest, ManifestParts, Results, Timing,
 };
+use crate::output::run_contacts::RunContacts;
 use crate::output::tables::fields::Column;
 use crate::output::tables::interface_shares::{INTERFACE, write_shares};
 use crate::output::tables::poses::PoseRow;

@@ -4,8 +4,9 @@
 
 use std::path::Path;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{
-    Format, InputSpec, Molecule, ReadError, ReadOptions, read, write_molecule,
+    Format, InputSpec, Molecule, ReadOptions, read, write_molecule,
 };
 
 const HEAD: &str = "data_X\nloop_\n_atom_site.group_PDB\n_atom_site.id\n_atom_site.type_symbol\n\
@@ -14,7 +15,7 @@ _atom_site.label_seq_id\n_atom_site.pdbx_PDB_ins_code\n_atom_site.Cartn_x\n_atom
 _atom_site.occupancy\n_atom_site.B_iso_or_equiv\n_atom_site.auth_seq_id\n_atom_site.auth_asym_id\n\
 _atom_site.pdbx_PDB_model_num\n";
 
-fn read_text(text: &str, chains: &str) -> Result<Molecule, ReadError> {
+fn read_text(text: &str, chains: &str) -> Result<Molecule, Error> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.cif");
     std::fs::write(&path, text).unwrap();
@@ -139,38 +140,35 @@ fn only_the_first_model_and_the_first_block_with_atoms_are_read() {
 #[test]
 fn broken_files_name_their_line() {
     let bad = |row: &str| read_text(&format!("{HEAD}{row}\n"), "").unwrap_err();
-    let line = HEAD.lines().count() + 1;
+    let line = HEAD.lines().count() as u64 + 1;
     for x in ["nan", "?", "1.2.3", "-", "1,5"] {
         let error = bad(&format!("ATOM 1 C CA . GLY A 1 ? {x} 2 3 1 9 1 A 1"));
-        assert!(matches!(error, ReadError::Field { .. }), "{x}: {error:?}");
         assert_eq!(error.line(), Some(line));
         assert!(error.to_string().contains("Cartn_x"), "{error}");
     }
     let short = bad("ATOM 1 C CA . GLY A 1 ? 1 2 3 1 9 1 A");
-    assert!(matches!(short, ReadError::BrokenCif { .. }) && short.line() == Some(line));
+    assert!(short.message().contains("mmCIF text is broken") && short.line() == Some(line));
     let open = bad("ATOM 1 C 'CA . GLY A 1 ? 1 2 3 1 9 1 A 1");
-    assert!(matches!(open, ReadError::BrokenCif { .. }) && open.line() == Some(line));
+    assert!(open.message().contains("never closed") && open.line() == Some(line));
     let number = bad("ATOM 1 C CA . GLY A 1 ? 1 2 3 1 9 1x A 1");
     assert!(
         number.to_string().contains("auth_seq_id is '1x'"),
         "{number}"
     );
     let element = bad("HETATM 1 ? QQ . LIG A 1 ? 1 2 3 1 9 1 A 1");
-    assert!(matches!(element, ReadError::UnknownElement { .. }) && element.line() == Some(line));
+    assert!(element.message().contains("element of atom QQ") && element.line() == Some(line));
     let column = read_text(
         &HEAD
             .replace("Cartn_z", "other")
             .replace("data_X", "data_X\n#"),
         "",
     );
-    assert!(matches!(column, Err(ReadError::NoAtoms { .. })));
+    assert!(column.unwrap_err().message().contains("no atoms"));
     let row = "ATOM 1 C CA . GLY A 1 ? 1 2 3 1 9 1 A 1\n";
     let column = read_text(&format!("{}{row}", HEAD.replace("Cartn_z", "other")), "").unwrap_err();
     assert!(column.to_string().contains("no column Cartn_z"), "{column}");
-    assert!(matches!(
-        read_text("data_x\n_cell.a 1\n", ""),
-        Err(ReadError::NoAtoms { .. })
-    ));
+    let none = read_text("data_x\n_cell.a 1\n", "").unwrap_err();
+    assert!(none.message().contains("no atoms"), "{none}");
 }
 
 #[test]

@@ -4,11 +4,12 @@
 #![cfg(feature = "molecule")]
 
 use crate::pdb_text::{Line, names, text};
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{
-    DropKind, Dropped, InputSpec, Molecule, ReadError, ReadOptions, Waters, read,
+    DropKind, Dropped, InputSpec, Molecule, ReadOptions, Waters, read,
 };
 
-fn read_by(lines: &[Line], options: &ReadOptions) -> Result<Molecule, ReadError> {
+fn read_by(lines: &[Line], options: &ReadOptions) -> Result<Molecule, Error> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("x.pdb");
     std::fs::write(&path, text(lines)).unwrap();
@@ -162,8 +163,8 @@ fn atoms_are_kept_whatever_they_are_called() {
     // What is neither an atom nor a site is refused as before, with a way out.
     let odd = [hetero(" XX1", "LIG", "  ")];
     let error = read_by(&with(&odd), &ReadOptions::default()).unwrap_err();
-    assert!(matches!(error, ReadError::UnknownElement { .. }));
-    assert!(error.remedy().contains("--drop-residue"));
+    assert!(error.message().contains("element of atom XX1"), "{error}");
+    assert!(error.remedy().unwrap().contains("--drop-residue"));
     let options = ReadOptions {
         drop_residue: vec!["LIG".to_owned()],
         ..ReadOptions::default()

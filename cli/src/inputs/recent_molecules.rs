@@ -5,7 +5,8 @@
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::{Arc, Mutex};
 
-use knotdock_structures::molecule::{InputSpec, Molecule, ReadError, ReadOptions, read_bytes};
+use knotdock_structures::Error;
+use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read_bytes};
 
 use knotdock::output::records::input_record::InputRecord;
 
@@ -36,7 +37,7 @@ pub fn read_recent(
     (spec, record): (&InputSpec, &InputRecord),
     bytes: &[u8],
     options: &ReadOptions,
-) -> Result<Molecule, ReadError> {
+) -> Result<Molecule, Error> {
     if !IS_KEPT.load(Ordering::Relaxed) {
         return read_bytes(spec, bytes.to_vec(), options);
     }

@@ -19,10 +19,10 @@ use serde_json::{Value, json};
 
 use crate::report::columns::{ShownColumn, is_term, shown};
 use crate::report::shown::{placement, rounded, solid};
-use knotdock::output::run_contacts::RunContacts;
 use knotdock::interface::{Contact, ResidueName, heavy_residues};
 use knotdock::options::DockOptions;
 use knotdock::output::files::assemblies::Surface;
+use knotdock::output::run_contacts::RunContacts;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
 

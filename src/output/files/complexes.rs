@@ -6,9 +6,7 @@ use std::io;
 use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::molecule::{
-    ChainMap, Format, Molecule, WriteError, complex_format, write_complex,
-};
+use knotdock_structures::molecule::{ChainMap, Format, Molecule, complex_format, write_complex};
 
 use crate::output::files::disk;
 use crate::output::files::whole_file::write_new;
@@ -116,7 +114,7 @@ pub fn write_complexes(
         let path = folder.join(&name);
         let written = write_new(&path, |mut file| {
             let map = write_complex(&mut file, format, &with(receptor, &others), &remarks);
-            chains = Some(map.map_err(io_error)?);
+            chains = Some(map?);
             Ok(())
         });
         written.map_err(|source| file_error::writing(&path, source))?;
@@ -126,7 +124,7 @@ pub fn write_complexes(
         Some(chains) => chains,
         // No complex was requested: the names are what they would have been.
         None => write_complex(&mut io::sink(), format, &with(receptor, &unplaced), &[])
-            .map_err(|error| file_error::writing(folder, io_error(error)))?,
+            .map_err(|error| file_error::writing(folder, error))?,
     };
     Ok(Written { names, chains })
 }
@@ -176,11 +174,4 @@ fn remarks(row: &PoseRow, arrangement: Arrangement, note: &str) -> Vec<String> {
         format!("{what} turned by (w x y z) {w:.6} {x:.6} {y:.6} {z:.6}"),
         format!("then moved by {:.3} {:.3} {:.3} A", t.x, t.y, t.z),
     ]
-}
-
-pub(crate) fn io_error(error: WriteError) -> io::Error {
-    match error {
-        WriteError::Io(error) => error,
-        other => io::Error::other(other),
-    }
 }

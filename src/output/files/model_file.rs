@@ -6,7 +6,7 @@ use std::path::Path;
 
 use knotdock_structures::molecule::{Format, ModelWriter, Molecule, complex_format};
 
-use crate::output::files::complexes::{io_error, placed_copies};
+use crate::output::files::complexes::placed_copies;
 use crate::output::files::disk;
 use crate::output::files::whole_file::write_new;
 use crate::output::records::program::VERSION;
@@ -64,7 +64,7 @@ pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Er
                 Ok(others) => {
                     let all: Vec<&Molecule> =
                         [pair.molecules[0]].into_iter().chain(&others).collect();
-                    models.write(&all).map_err(io_error)?;
+                    models.write(&all)?;
                 }
                 Err(error) => {
                     failed = Some(error);
@@ -72,7 +72,7 @@ pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Er
                 }
             }
         }
-        models.finish().map_err(io_error)
+        models.finish()
     });
     written.map_err(|source| file_error::writing(&path, source))?;
     failed.map_or(Ok(name), Err)

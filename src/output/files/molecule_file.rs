@@ -5,7 +5,6 @@ use std::path::Path;
 
 use knotdock_structures::molecule::{Format, Molecule, write_renamed};
 
-use crate::output::files::complexes::io_error;
 use crate::output::files::whole_file::write_whole;
 use crate::output::records::program::VERSION;
 
@@ -29,6 +28,6 @@ pub fn write(path: &Path, format: Format, molecule: &Molecule) -> Result<(), Err
         molecule.report.file
     );
     write_whole(path, |mut file| {
-        write_renamed(&mut file, format, molecule, std::slice::from_ref(&remark)).map_err(io_error)
+        write_renamed(&mut file, format, molecule, std::slice::from_ref(&remark))
     })
 }

@@ -1,6 +1,7 @@
 //! Atom records as text, for tests of the PDB reader.
 
-use knotdock_structures::molecule::{InputSpec, Molecule, ReadError, ReadOptions, read};
+use knotdock_structures::Error;
+use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 
 /// An atom record: record name, atom name (4 columns), alternate location, residue, chain, number, insertion, x,
 /// occupancy, element (2 columns).
@@ -95,7 +96,7 @@ pub fn text(lines: &[Line]) -> String {
 }
 
 /// Reads bytes as a file of the given name; `chains` follows the name, as in `:H,L`.
-pub fn read_bytes(name: &str, bytes: &[u8], chains: &str) -> Result<Molecule, ReadError> {
+pub fn read_bytes(name: &str, bytes: &[u8], chains: &str) -> Result<Molecule, Error> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     std::fs::write(&path, bytes).unwrap();
@@ -104,7 +105,7 @@ pub fn read_bytes(name: &str, bytes: &[u8], chains: &str) -> Result<Molecule, Re
 }
 
 /// Reads text as a PDB file.
-pub fn read_text(text: &str) -> Result<Molecule, ReadError> {
+pub fn read_text(text: &str) -> Result<Molecule, Error> {
     read_bytes("x.pdb", text.as_bytes(), "")
 }
 

@@ -54,7 +54,7 @@ pub(crate) fn is_additive(residue_name: &str) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide};
+    use crate::molecule::chemistry::{is_amino_acid, is_nucleotide};
 
     #[test]
     fn nothing_that_makes_a_molecule_is_an_additive() {

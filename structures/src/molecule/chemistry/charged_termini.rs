@@ -10,14 +10,10 @@
 //! Else residues are unresolved between them, and the open ends stand for neutral bonds. Chain names alone do not
 //! decide, since many files have chains merged.
 
-use crate::molecule::chemistry::charge_table::{
-    AMINO_TERMINUS, CARBOXYL_CARBON, CARBOXYL_OXYGENS, PROLINE_TERMINUS, TERMINI_PKA,
+use crate::molecule::chemistry::{CARBOXYL, Labels, TERMINI_PKA, amino_terminus};
+use crate::molecule::model::{
+    Atom, GroupKind, MAX_CAP_LENGTH, Molecule, Residue, ResidueKey, squared_distance,
 };
-use crate::molecule::chemistry::labels::{Labels, is_proline};
-use crate::molecule::model::atom::{Atom, squared_distance};
-use crate::molecule::model::cut_ends::MAX_CAP_LENGTH;
-use crate::molecule::model::groups::{GroupKind, Residue, ResidueKey};
-use crate::molecule::model::molecule::Molecule;
 use crate::neighbours::SpatialHash;
 
 /// Longest C-N distance in Å of a peptide bond, with room for poor structures.
@@ -40,10 +36,8 @@ pub(crate) struct Caps<'a> {
 impl Molecule {
     /// Charges the termini, and counts gaps.
     pub(crate) fn charge_termini(&self, groups: &[Residue<'_>], ph: f64, labels: &mut Labels) {
-        let peptide: Vec<&Residue<'_>> = groups
-            .iter()
-            .filter(|residue| residue.is_peptide())
-            .collect();
+        let peptide = groups.iter().filter(|residue| residue.is_peptide());
+        let peptide: Vec<&Residue<'_>> = peptide.collect();
         let caps = self.caps(groups);
         for (place, residue) in peptide.iter().enumerate() {
             let before = place.checked_sub(1).and_then(|place| peptide.get(place));
@@ -79,16 +73,15 @@ impl Molecule {
     /// Whether two peptide residues in a row belong to different chains.
     fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
         let is_broken = self.distance(before, after).is_some_and(|d| d > BOND);
-        let (chain, number, ..) = before.key;
-        let (next_chain, next_number, ..) = after.key;
+        let (chain, number) = (before.key.chain, before.key.number);
+        let (next_chain, next_number) = (after.key.chain, after.key.number);
         is_broken && (chain != next_chain || next_number <= number.saturating_add(1))
     }
 
     /// Whether a residue has the second oxygen of a carboxyl end.
     pub(crate) fn has_last_oxygen(&self, residue: &Residue<'_>) -> bool {
-        ["OXT", "OT2", "O2", "OC2"]
-            .iter()
-            .any(|name| self.atom(residue, name).is_some())
+        let mut names = ["OXT", "OT2", "O2", "OC2"].iter();
+        names.any(|name| self.atom(residue, name).is_some())
     }
 
     /// Whether a residue begins a chain because the one before it ended one: that has its second oxygen, and no
@@ -106,10 +99,7 @@ impl Molecule {
                 .is_some_and(|distance| distance <= BOND)
         };
         let is_of_chain = || {
-            let first = residue
-                .atoms
-                .first()
-                .and_then(|&index| self.atoms.get(index));
+            let first = residue.members(&self.atoms).next();
             residue.kind == GroupKind::AminoAcid && first.is_some_and(|atom| !atom.hetero)
                 || after.is_some_and(|after| bonded(residue, after))
         };
@@ -129,12 +119,8 @@ impl Molecule {
         let Some(end) = self.atom(residue, name) else {
             return true;
         };
-        if self
-            .report
-            .cut_ends
-            .iter()
-            .any(|cut| cut.is(residue.key, name))
-        {
+        let mut cut_ends = self.report.cut_ends.iter();
+        if cut_ends.any(|cut| cut.is(residue.key, name)) {
             return true;
         }
         caps.cells.around(end.position).copied().any(|index| {
@@ -159,9 +145,7 @@ impl Molecule {
             };
             match group.kind {
                 GroupKind::Cofactor | GroupKind::Glycan => {
-                    for &index in &group.atoms {
-                        add(&self.atoms[index], None);
-                    }
+                    group.members(&self.atoms).for_each(|atom| add(atom, None));
                 }
                 GroupKind::AminoAcid | GroupKind::ModifiedResidue => {
                     for end in ["N", "C"] {
@@ -181,39 +165,24 @@ impl Molecule {
 
     fn charge_amino(&self, residue: &Residue<'_>, labels: &mut Labels) {
         // Pyroglutamate's amide carries no proton to share.
-        if residue.key.3 == "PCA" {
-            return;
+        if residue.key.name != "PCA" {
+            self.set(residue, amino_terminus(residue.known_as), labels);
+            labels.report.termini[0] += 1;
         }
-        let charges = if is_proline(residue.known_as) {
-            PROLINE_TERMINUS
-        } else {
-            AMINO_TERMINUS
-        };
-        self.set(residue, charges, labels);
-        labels.report.termini[0] += 1;
     }
 
     fn charge_carboxyl(&self, residue: &Residue<'_>, labels: &mut Labels) {
-        let oxygens: Vec<usize> = residue
-            .atoms
-            .iter()
-            .copied()
-            .filter(|&index| {
-                let name = self.atoms.get(index).map_or("", |atom| atom.name.as_str());
-                matches!(
-                    name,
-                    "O" | "OXT" | "OT1" | "OT2" | "O1" | "O2" | "OC1" | "OC2"
-                )
-            })
-            .collect();
+        const OXYGENS: [&str; 8] = ["O", "OXT", "OT1", "OT2", "O1", "O2", "OC1", "OC2"];
+        let is_oxygen = |&&index: &&usize| OXYGENS.contains(&self.atoms[index].name.as_str());
+        let oxygens: Vec<usize> = residue.atoms.iter().filter(is_oxygen).copied().collect();
         if oxygens.is_empty() {
             return;
         }
         // Where the second oxygen was not seen, the first stands for both.
         for &index in &oxygens {
-            labels.charges[index] = CARBOXYL_OXYGENS / oxygens.len() as f64;
+            labels.charges[index] = CARBOXYL[1] / oxygens.len() as f64;
         }
-        self.set(residue, &[("C", CARBOXYL_CARBON)], labels);
+        self.set(residue, &[("C", CARBOXYL[0])], labels);
         labels.report.termini[1] += 1;
     }
 }

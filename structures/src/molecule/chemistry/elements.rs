@@ -1,8 +1,72 @@
 //! The element of an atom: from its column where that can be true, otherwise from its residue and name.
 
-use crate::molecule::chemistry::residues::{
-    amino_acid_type, is_amino_acid, is_nucleotide, is_water,
-};
+use std::sync::LazyLock;
+
+use crate::molecule::chemistry::{amino_acid_type, is_amino_acid, is_nucleotide, is_water};
+
+/// Lines of `#`, a header, then symbol, kind, radius, distance and charge.
+const TABLE: &str = include_str!("elements.csv");
+
+/// An element of the table beside this file, which has the sources.
+#[derive(Debug)]
+pub(crate) struct Element {
+    /// Symbol as in the periodic table; `D` for deuterium.
+    symbol: &'static str,
+    kind: ElementKind,
+    /// Radius of an atom beside whose kind hydrogens are atoms of their own, in Å.
+    pub(crate) radius: Option<f64>,
+    /// Equilibrium distance of UFF, in Å.
+    pub(crate) distance: Option<f64>,
+    /// Charge of the common ion, in e.
+    pub(crate) charge: Option<f64>,
+}
+
+/// Kind of an element by what its ions bind.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum ElementKind {
+    NonMetal,
+    /// A metal that sulphur and nitrogen seldom bind: its ligands are oxygens.
+    Hard,
+    Metal,
+}
+
+static ELEMENTS: LazyLock<Vec<Element>> = LazyLock::new(|| {
+    let lines = TABLE.lines().filter(|line| !line.starts_with('#')).skip(1);
+    let element = |line: &'static str| {
+        let fields: Vec<&str> = line.split(',').collect();
+        let &[symbol, kind, radius, distance, charge] = fields.as_slice() else {
+            // The table is part of the program, and tests read it.
+            unreachable!("elements.csv: not an element: `{line}`")
+        };
+        Element {
+            symbol,
+            kind: match kind {
+                "non-metal" => ElementKind::NonMetal,
+                "hard" => ElementKind::Hard,
+                _ => ElementKind::Metal,
+            },
+            radius: radius.parse().ok(),
+            distance: distance.parse().ok(),
+            charge: charge.parse().ok(),
+        }
+    };
+    lines.map(element).collect()
+});
+
+/// An element by its symbol.
+pub(crate) fn element(symbol: &str) -> Option<&'static Element> {
+    ELEMENTS.iter().find(|element| element.symbol == symbol)
+}
+
+/// Whether ions of an element count as metals: all that are not known as non-metals do.
+pub(crate) fn is_metal(symbol: &str) -> bool {
+    element(symbol).is_none_or(|element| element.kind != ElementKind::NonMetal)
+}
+
+/// Whether sulphur and nitrogen seldom bind a metal.
+pub(crate) fn is_hard(symbol: &str) -> bool {
+    element(symbol).is_some_and(|element| element.kind == ElementKind::Hard)
+}
 
 /// Where an atom's name stands in its PDB columns 13 to 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,27 +121,21 @@ pub(crate) fn resolve(
     } else {
         of_ion(residue_name, atom_name)
     };
-    match (given, by_names) {
-        // Old files and other programs' columns hold chain letters and numbers there, and calcium for CA.
-        (Some(given), Some(named)) if named == given || (named == "H" && given == "D") => {
-            Some(Resolved {
-                symbol: given,
-                origin: Origin::Column,
-            })
-        }
-        (Some(given), None) => Some(Resolved {
-            symbol: given,
-            origin: Origin::Column,
-        }),
-        (_, named) => Some(Resolved {
-            symbol: named.or_else(|| of_other_residue(atom_name, name_column, aligned))?,
-            origin: if column.is_empty() {
-                Origin::Derived
-            } else {
-                Origin::Corrected
-            },
-        }),
+    // Old files and other programs' columns hold chain letters and numbers there, and calcium for CA.
+    let fits = |given: &&str| {
+        by_names.is_none_or(|named| named == *given || (named == "H" && *given == "D"))
+    };
+    if let Some(symbol) = given.filter(fits) {
+        let origin = Origin::Column;
+        return Some(Resolved { symbol, origin });
     }
+    Some(Resolved {
+        symbol: by_names.or_else(|| of_other_residue(atom_name, name_column, aligned))?,
+        origin: match column {
+            "" => Origin::Derived,
+            _ => Origin::Corrected,
+        },
+    })
 }
 
 /// The element that a column gives, a charge beside it aside.
@@ -94,26 +152,10 @@ fn is_standard(residue_name: &str) -> bool {
     is_amino_acid(residue_name) || is_nucleotide(residue_name) || is_water(residue_name)
 }
 
-/// Symbols of the elements in the order of their numbers, and deuterium (IUPAC).
-const SYMBOLS: &str = "H He Li Be B C N O F Ne Na Mg Al Si P S Cl Ar K Ca Sc Ti V Cr Mn Fe Co Ni Cu Zn Ga Ge As Se Br Kr \
-    Rb Sr Y Zr Nb Mo Tc Ru Rh Pd Ag Cd In Sn Sb Te I Xe Cs Ba La Ce Pr Nd Pm Sm Eu Gd Tb Dy Ho Er Tm Yb Lu Hf Ta W Re Os \
-    Ir Pt Au Hg Tl Pb Bi Po At Rn Fr Ra Ac Th Pa U Np Pu Am Cm Bk Cf Es Fm Md No Lr Rf Db Sg Bh Hs Mt Ds Rg Cn Nh Fl Mc \
-    Lv Ts Og D";
-
 /// The symbol as in the periodic table, from any letter case.
 fn symbol(text: &str) -> Option<&'static str> {
-    // The common elements need no search.
-    match text {
-        "C" => return Some("C"),
-        "N" => return Some("N"),
-        "O" => return Some("O"),
-        "S" => return Some("S"),
-        "H" => return Some("H"),
-        _ => {}
-    }
-    SYMBOLS
-        .split(' ')
-        .find(|symbol| symbol.eq_ignore_ascii_case(text))
+    let mut symbols = ELEMENTS.iter().map(|element| element.symbol);
+    symbols.find(|symbol| symbol.eq_ignore_ascii_case(text))
 }
 
 /// Elements of standard residues are one-letter ones, selenium aside, and begin the atom's name after its digits and

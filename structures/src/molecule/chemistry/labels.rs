@@ -1,14 +1,19 @@
 //! Labels of a molecule's atoms: what effects beside shape act on. Charges in e, and contact types.
+//!
+//! The charge of a cysteine or histidine that binds a metal follows from it at any pH. A cysteine that binds zinc, iron,
+//! copper or their like is a thiolate: Dudev & Lim, J. Am. Chem. Soc. 124 (2002) 6759-6766. A histidine binds by the
+//! nitrogen that has no proton, and so is neutral with its proton on the other; between two metals it has none. If a
+//! residue's name says its state (`CYM`, `HID`, `HIP`, ...), the name decides.
 
-use crate::molecule::chemistry::charge_table::{
-    BACKBONE, Charges, NUCLEOTIDE, PROLINE, cofactor, ion, side_chain,
+use crate::molecule::chemistry::{
+    Charges, backbone, cofactor, ion, is_hard, is_metal, known_atom, nucleotide, side_chain_charges,
 };
-use crate::molecule::chemistry::contact_types::atom_types;
-use crate::molecule::model::atom::Atom;
-use crate::molecule::model::groups::{GroupKind, Residue, residues};
-use crate::molecule::model::molecule::Molecule;
+use crate::molecule::model::{Atom, GroupKind, Molecule, Residue, residues, squared_distance};
 use serde::Serialize;
 use std::collections::BTreeMap;
+
+/// Longest distance in Å of a metal from the sulphur or nitrogen that binds it.
+const METAL_BOND: f64 = 2.8;
 
 /// Labels of a molecule.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -65,17 +70,14 @@ impl Molecule {
             labels.report.metal_bound += usize::from(bound.is_some());
             self.charge(residue, bound, ph, &mut labels);
             for &index in &residue.atoms {
-                if let Some(types) = atom_types(residue.known_as, &self.atoms[index].name) {
-                    labels.contact_types[index] = Some(types.contact);
-                    labels.atom_kinds[index] = Some(types.kind);
+                if let Some(atom) = known_atom(residue.known_as, &self.atoms[index].name) {
+                    labels.contact_types[index] = Some(atom.contact);
+                    labels.atom_kinds[index] = Some(atom.kind);
                 }
             }
-            if !residue
-                .atoms
-                .iter()
-                .any(|&index| labels.contact_types[index].is_some())
-            {
-                let name = residue.key.3.to_owned();
+            let is_typed = |&index: &usize| labels.contact_types[index].is_some();
+            if !residue.atoms.iter().any(is_typed) {
+                let name = residue.key.name.to_owned();
                 *labels.report.unknown_types.entry(name).or_default() += 1;
             }
         }
@@ -88,46 +90,69 @@ impl Molecule {
         labels
     }
 
+    /// Places of the metals that thiolates and imidazoles bind (Å), ions and those of cofactors.
+    pub(crate) fn metals(&self, groups: &[Residue<'_>]) -> Vec<[f64; 3]> {
+        let others = groups.iter().filter(|group| !group.is_peptide());
+        let atoms = others.flat_map(|group| group.members(&self.atoms));
+        let binds = |element: &str| !element.is_empty() && is_metal(element) && !is_hard(element);
+        let metals = atoms.filter(|atom| binds(&atom.element));
+        metals.map(|atom| atom.position).collect()
+    }
+
+    /// The state of a residue that binds one of these metals, as the table of charges names it.
+    pub(crate) fn metal_bound(
+        &self,
+        residue: &Residue<'_>,
+        metals: &[[f64; 3]],
+    ) -> Option<&'static str> {
+        let binds = |name: &str| {
+            self.atom(residue, name).is_some_and(|atom| {
+                let near = |metal: &[f64; 3]| {
+                    squared_distance(*metal, atom.position) <= METAL_BOND * METAL_BOND
+                };
+                metals.iter().any(near)
+            })
+        };
+        match residue.known_as {
+            "CYS" => binds("SG").then_some("CYM"),
+            "HIS" => match (binds("ND1"), binds("NE2")) {
+                (true, true) => Some("HIS-"),
+                (true, false) => Some("HIE"),
+                (false, true) => Some("HID"),
+                (false, false) => None,
+            },
+            _ => None,
+        }
+    }
+
     /// Charges of one residue within a chain; `bound` is its state where a metal decides that.
     fn charge(&self, residue: &Residue<'_>, bound: Option<&str>, ph: f64, labels: &mut Labels) {
         let name = residue.known_as;
-        let mut known = true;
         match residue.kind {
             GroupKind::AminoAcid | GroupKind::ModifiedResidue => {
-                let backbone = if is_proline(name) { PROLINE } else { BACKBONE };
-                self.set(residue, backbone, labels);
-                match side_chain(bound.unwrap_or(name), ph) {
-                    Some(charges) => self.set_group(residue, charges, labels),
-                    None => known = false,
+                self.set(residue, backbone(name), labels);
+                if let Some(charges) = side_chain_charges(bound.unwrap_or(name), ph) {
+                    return self.set_group(residue, charges, labels);
                 }
             }
-            GroupKind::Nucleotide => self.set_group(residue, NUCLEOTIDE, labels),
+            GroupKind::Nucleotide => return self.set_group(residue, nucleotide(), labels),
             // Uncharged but for the acids among them, which are rare.
-            GroupKind::Glycan => {}
+            GroupKind::Glycan => return,
             GroupKind::Metal | GroupKind::Cofactor => {
-                let single = match residue.atoms.as_slice() {
-                    &[index] => self.atoms.get(index).map(|atom| (index, atom)),
-                    _ => None,
-                };
-                let charge =
-                    single.and_then(|(index, atom)| Some((index, ion(name, &atom.element)?)));
-                match (charge, cofactor(name)) {
-                    (Some((index, charge)), _) => {
-                        labels.charges[index] = charge;
-                        labels.group_signs[index] = charge.signum() as i8;
-                    }
-                    (None, Some(charges)) => self.set_group(residue, charges, labels),
-                    (None, None) => known = false,
+                if let &[index] = residue.atoms.as_slice()
+                    && let Some(charge) = ion(name, &self.atoms[index].element)
+                {
+                    labels.charges[index] = charge;
+                    labels.group_signs[index] = charge.signum() as i8;
+                    return;
+                }
+                if let Some(charges) = cofactor(name) {
+                    return self.set_group(residue, charges, labels);
                 }
             }
         }
-        if !known {
-            *labels
-                .report
-                .unknown_charges
-                .entry(name.to_owned())
-                .or_default() += 1;
-        }
+        let unknown = labels.report.unknown_charges.entry(name.to_owned());
+        *unknown.or_default() += 1;
     }
 
     /// Sets the charges of a group, which its atoms share if they sum to more than half of a unit.
@@ -138,8 +163,8 @@ impl Molecule {
             return;
         }
         for &index in &residue.atoms {
-            let name = self.atoms.get(index).map_or("", |atom| atom.name.as_str());
-            if charges.iter().any(|(known, _)| *known == name) {
+            let name = &self.atoms[index].name;
+            if charges.iter().any(|(known, _)| known == name) {
                 labels.group_signs[index] = sum.signum() as i8;
             }
         }
@@ -147,30 +172,26 @@ impl Molecule {
 
     pub(crate) fn set(&self, residue: &Residue<'_>, charges: Charges, labels: &mut Labels) {
         for &index in &residue.atoms {
-            let name = self.atoms.get(index).map_or("", |atom| atom.name.as_str());
-            if let Some((_, charge)) = charges.iter().find(|(known, _)| *known == name) {
+            let name = &self.atoms[index].name;
+            if let Some((_, charge)) = charges.iter().find(|(known, _)| known == name) {
                 labels.charges[index] = *charge;
             }
         }
     }
 
     pub(crate) fn atom<'a>(&'a self, residue: &Residue<'_>, name: &str) -> Option<&'a Atom> {
-        let atoms = residue
+        let index = residue
             .atoms
             .iter()
-            .filter_map(|&index| self.atoms.get(index));
-        atoms.into_iter().find(|atom| atom.name == name)
+            .find(|&&index| self.atoms[index].name == name)?;
+        Some(&self.atoms[*index])
     }
-}
-
-pub(crate) fn is_proline(residue_name: &str) -> bool {
-    matches!(residue_name, "PRO" | "HYP")
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::format::Format;
+    use crate::molecule::model::Format;
 
     fn atom(name: &str, residue: &str, number: i64, position: [f64; 3]) -> Atom {
         Atom {
@@ -178,15 +199,9 @@ mod tests {
             residue_name: residue.to_owned(),
             chain: "A".to_owned(),
             residue_number: number,
-            insertion_code: None,
-            alternate_location: None,
             element: name[..1].to_owned(),
             position,
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.7,
-            line: 1,
+            ..Atom::default()
         }
     }
 
@@ -342,5 +357,74 @@ mod tests {
         assert_eq!(names, ["LIG", "XAA"]);
         assert_eq!(labels.charges[5], 2.0);
         assert_eq!(labels.contact_types, vec![None; 6]);
+    }
+
+    fn metal(element: &str, number: i64, position: [f64; 3]) -> Atom {
+        let name = element.to_ascii_uppercase();
+        Atom {
+            element: element.to_owned(),
+            ..atom(&name, &name, number, position)
+        }
+    }
+
+    /// Side chains of cysteine at so far from the origin along each axis, and a metal there.
+    fn cysteines(name: &str, distance: f64, metal: &str) -> LabelReport {
+        let mut atoms = vec![self::metal(metal, 100, [0.0; 3])];
+        for axis in 0..3 {
+            for (place, sign) in [(1, 1.0), (2, -1.0)] {
+                let at = |distance: f64| {
+                    let mut position = [0.0; 3];
+                    position[axis] = sign * distance;
+                    position
+                };
+                let number = 10 * (2 * axis as i64 + place);
+                atoms.push(atom("SG", name, number, at(distance)));
+                atoms.push(atom("CB", name, number, at(distance + 1.8)));
+            }
+        }
+        Molecule::new(atoms, Format::Pdb).labels(7.0).report
+    }
+
+    /// Found by a user: zinc fingers were as positive as their zinc, and a RING domain of eight cysteines was charged
+    /// by 8 e too high.
+    #[test]
+    fn cysteines_that_bind_a_metal_are_thiolates() {
+        for (name, distance, metal, charge, bound) in [
+            ("CYS", 2.35, "Zn", -4.0, 6),
+            ("CYS", 2.8, "Fe", -3.0, 6),
+            ("CYM", 2.35, "Zn", -4.0, 0),
+            // Too far, a disulphide's half by its name, and a metal that binds oxygens.
+            ("CYS", 2.81, "Zn", 2.0, 0),
+            ("CYX", 2.35, "Zn", 2.0, 0),
+            ("CYS", 2.35, "Mg", 2.0, 0),
+        ] {
+            let report = cysteines(name, distance, metal);
+            assert_eq!((report.net_charge, report.metal_bound), (charge, bound));
+        }
+    }
+
+    /// The nitrogen that binds has no proton.
+    #[test]
+    fn histidines_bind_by_the_nitrogen_without_a_proton() {
+        let of = |name: &str, metals: &[f64], ph: f64| {
+            let mut atoms = vec![
+                atom("ND1", name, 1, [0.0; 3]),
+                atom("NE2", name, 1, [2.2, 0.0, 0.0]),
+            ];
+            for (index, x) in metals.iter().enumerate() {
+                let zinc = metal("Zn", 100 + index as i64, [*x, 0.0, 0.0]);
+                atoms.push(zinc);
+            }
+            let labels = Molecule::new(atoms, Format::Pdb).labels(ph);
+            [labels.charges[0], labels.charges[1]]
+        };
+        for ph in [2.0, 7.0] {
+            assert_eq!(of("HIS", &[-2.1], ph), [-0.40, -0.10]);
+            assert_eq!(of("HIS", &[4.3], ph), [-0.10, -0.40]);
+            // The imidazolate of superoxide dismutase, between copper and zinc.
+            assert_eq!(of("HIS", &[-2.1, 4.3], ph), [-0.5, -0.5]);
+        }
+        assert_eq!(of("HIS", &[], 2.0), [0.05, 0.05]);
+        assert_eq!(of("HID", &[-2.1], 7.0), [-0.10, -0.40]);
     }
 }

@@ -18,110 +18,11 @@
 //!
 //! Few distinct radii matter: each is a class of the lifted axis and costs time.
 
-use crate::molecule::chemistry::residues::{
-    AtomType, amino_acid_type, backbone_type, nucleotide_type,
+use crate::molecule::chemistry::residues::{C3H1, N, O2H1, P, RadiusClass, S, SE};
+use crate::molecule::chemistry::{
+    amino_acid_type, backbone_type, element, is_hydrogen, nucleotide_type,
 };
-use crate::molecule::model::groups::GroupKind;
-
-impl AtomType {
-    /// Radius, in Å.
-    const fn radius(self) -> f64 {
-        match self {
-            Self::C3H0 => 1.61,
-            Self::C3H1 => 1.76,
-            Self::C4 => 1.88,
-            Self::N => 1.64,
-            Self::O1H0 => 1.42,
-            Self::O2H1 => 1.46,
-            Self::S => 1.77,
-            Self::Se => 1.90,
-            Self::P => 1.80,
-        }
-    }
-}
-
-/// Halogens: Bondi's radii, in Å.
-const HALOGENS: [(&str, f64); 4] = [("F", 1.47), ("Cl", 1.75), ("Br", 1.85), ("I", 1.98)];
-
-/// All-atom radii of the elements of proteins and nucleic acids, in Å: Bondi's, and Rowland and Taylor's for hydrogen.
-const ALL_ATOM: [(&str, f64); 9] = [
-    ("H", 1.10),
-    ("D", 1.10),
-    ("T", 1.10),
-    ("C", 1.70),
-    ("N", 1.55),
-    ("O", 1.52),
-    ("P", 1.80),
-    ("S", 1.80),
-    ("Se", 1.90),
-];
-
-/// Metals and the rest: UFF's equilibrium distances x_I, in Å; the radius is half of that, rounded to 0.1 Å.
-const UFF_DISTANCES: [(&str, f64); 63] = [
-    ("Li", 2.451),
-    ("Be", 2.745),
-    ("B", 4.083),
-    ("Na", 2.983),
-    ("Mg", 3.021),
-    ("Al", 4.499),
-    ("Si", 4.295),
-    ("K", 3.812),
-    ("Ca", 3.399),
-    ("Ti", 3.175),
-    ("V", 3.144),
-    ("Cr", 3.023),
-    ("Mn", 2.961),
-    ("Fe", 2.912),
-    ("Co", 2.872),
-    ("Ni", 2.834),
-    ("Cu", 3.495),
-    ("Zn", 2.763),
-    ("Ga", 4.383),
-    ("Ge", 4.280),
-    ("As", 4.230),
-    ("Rb", 4.114),
-    ("Sr", 3.641),
-    ("Y", 3.345),
-    ("Zr", 3.124),
-    ("Mo", 3.052),
-    ("Ru", 2.963),
-    ("Rh", 2.929),
-    ("Pd", 2.899),
-    ("Ag", 3.148),
-    ("Cd", 2.848),
-    ("In", 4.463),
-    ("Sn", 4.392),
-    ("Sb", 4.420),
-    ("Te", 4.470),
-    ("Xe", 4.404),
-    ("Cs", 4.517),
-    ("Ba", 3.703),
-    ("La", 3.522),
-    ("Ce", 3.556),
-    ("Pr", 3.606),
-    ("Nd", 3.575),
-    ("Sm", 3.520),
-    ("Eu", 3.493),
-    ("Gd", 3.368),
-    ("Tb", 3.451),
-    ("Dy", 3.428),
-    ("Ho", 3.409),
-    ("Er", 3.391),
-    ("Yb", 3.355),
-    ("Lu", 3.640),
-    ("Ta", 3.170),
-    ("W", 3.069),
-    ("Re", 2.954),
-    ("Os", 3.120),
-    ("Ir", 2.840),
-    ("Pt", 2.754),
-    ("Au", 3.293),
-    ("Hg", 2.705),
-    ("Tl", 4.347),
-    ("Pb", 4.297),
-    ("Bi", 4.370),
-    ("U", 3.395),
-];
+use crate::molecule::model::GroupKind;
 
 /// Radius of all other elements, in Å: in the middle of UFF's metals.
 const OTHER: f64 = 1.7;
@@ -138,50 +39,29 @@ pub(crate) fn radius(residue_name: &str, atom_name: &str, element: &str, kind: G
             _ => None,
         })
         // A name in the tables is not enough where the element says otherwise.
-        .filter(|atom_type| element_of(*atom_type) == element)
+        .filter(|class| class.element == element)
         .or_else(|| class_of_element(element))
-        .map_or_else(|| of_element(element), AtomType::radius)
+        .map_or_else(|| of_element(element), |class| class.radius)
 }
 
-/// Radius of an atom beside whose kind hydrogens stand as atoms of their own, in Å.
-pub(crate) fn all_atom_radius(element: &str) -> f64 {
-    let known = ALL_ATOM.iter().find(|(symbol, _)| *symbol == element);
-    known.map_or_else(|| of_element(element), |(_, radius)| *radius)
+/// Radius of an atom beside whose kind hydrogens are atoms of their own, in Å.
+pub(crate) fn all_atom_radius(symbol: &str) -> f64 {
+    of_element(if is_hydrogen(symbol) { "H" } else { symbol })
 }
 
-const fn element_of(kind: AtomType) -> &'static str {
-    match kind {
-        AtomType::C3H0 | AtomType::C3H1 | AtomType::C4 => "C",
-        AtomType::N => "N",
-        AtomType::O1H0 | AtomType::O2H1 => "O",
-        AtomType::S => "S",
-        AtomType::Se => "Se",
-        AtomType::P => "P",
-    }
+/// The class of an atom whose hydrogens are not known.
+fn class_of_element(element: &str) -> Option<&'static RadiusClass> {
+    let classes = [&C3H1, &N, &O2H1, &S, &SE, &P];
+    classes.into_iter().find(|class| class.element == element)
 }
 
-fn class_of_element(element: &str) -> Option<AtomType> {
-    match element {
-        "C" => Some(AtomType::C3H1),
-        "N" => Some(AtomType::N),
-        "O" => Some(AtomType::O2H1),
-        "S" => Some(AtomType::S),
-        "Se" => Some(AtomType::Se),
-        "P" => Some(AtomType::P),
-        _ => None,
-    }
-}
-
-fn of_element(element: &str) -> f64 {
-    let find = |table: &[(&str, f64)]| {
-        table
-            .iter()
-            .find(|(symbol, _)| *symbol == element)
-            .map(|(_, value)| *value)
-    };
-    find(&HALOGENS)
-        .or_else(|| find(&UFF_DISTANCES).map(|distance| (distance * 5.0).round() / 10.0))
-        .unwrap_or(OTHER)
+/// Radius of an element that has no class: Bondi's, or half of UFF's distance.
+fn of_element(symbol: &str) -> f64 {
+    let element = element(symbol);
+    let radius = element.and_then(|element| element.radius);
+    let distance = element.and_then(|element| element.distance);
+    let half = || distance.map(|distance| (distance * 5.0).round() / 10.0);
+    radius.or_else(half).unwrap_or(OTHER)
 }
 
 #[cfg(test)]
@@ -226,8 +106,9 @@ mod tests {
 
     #[test]
     fn every_radius_is_of_an_atoms_size() {
-        for (symbol, _) in HALOGENS.iter().chain(&UFF_DISTANCES) {
+        for symbol in ["F", "Cl", "Br", "I", "Li", "Fe", "Zn", "U", "Xe", "Lr"] {
             assert!((1.2..=2.3).contains(&of_element(symbol)), "{symbol}");
         }
+        assert_eq!(["H", "D", "T"].map(all_atom_radius), [1.10; 3]);
     }
 }

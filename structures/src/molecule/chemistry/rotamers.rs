@@ -1,15 +1,98 @@
-//! Rotamers of amino acids by backbone, from the table beside this file.
+//! Chi angles of amino acids, about whose bonds the side chains turn, and rotamers by backbone.
 //!
-//! The table is an excerpt of the 2010 Backbone-Dependent Rotamer Library: Shapovalov & Dunbrack, Structure 19 (2011)
-//! 844-858, free under the Open Data Commons Attribution License. It holds nodes every 40 degrees of phi and psi, and
-//! rotamers of at least 2%. Of amides, carboxylates and rings the library has a rotamer every 30
-//! degrees or so of the last angle, each with its own probability.
+//! Atoms and signs are those of IUPAC-IUB, J. Mol. Biol. 52 (1970) 1-17. Chi k is the dihedral angle of four atoms in a
+//! row of the chain N, CA, CB, ..., counted from its k-th atom. Alanine and glycine have none; proline's are left out,
+//! because its ring does not turn.
+//!
+//! The table of rotamers beside this file is an excerpt of the 2010 Backbone-Dependent Rotamer Library: Shapovalov &
+//! Dunbrack, Structure 19 (2011) 844-858, free under the Open Data Commons Attribution License. It holds nodes every 40
+//! degrees of phi and psi, and rotamers of at least 2%. For amides, carboxylates and rings the library has a rotamer
+//! every 30 degrees or so of the last angle, each with its own probability.
 
 use std::collections::HashMap;
 use std::f64::consts::TAU;
 use std::sync::LazyLock;
 
-use crate::molecule::chemistry::chi_angles::{MAX_CHI, period};
+use crate::molecule::chemistry::side_chain;
+
+/// Most chi angles of a residue.
+pub(crate) const MAX_CHI: usize = 4;
+
+/// The atoms after CB in the chain of a residue's chi angles. There are as many as angles.
+const CHAINS: [(&str, &[&str]); 17] = [
+    ("ARG", &["CG", "CD", "NE", "CZ"]),
+    ("ASN", &["CG", "OD1"]),
+    ("ASP", &["CG", "OD1"]),
+    ("CYS", &["SG"]),
+    ("GLN", &["CG", "CD", "OE1"]),
+    ("GLU", &["CG", "CD", "OE1"]),
+    ("HIS", &["CG", "ND1"]),
+    ("ILE", &["CG1", "CD1"]),
+    ("LEU", &["CG", "CD1"]),
+    ("LYS", &["CG", "CD", "CE", "NZ"]),
+    ("MET", &["CG", "SD", "CE"]),
+    ("PHE", &["CG", "CD1"]),
+    ("SER", &["OG"]),
+    ("THR", &["OG1"]),
+    ("TRP", &["CG", "CD1"]),
+    ("TYR", &["CG", "CD1"]),
+    ("VAL", &["CG1"]),
+];
+
+/// The turning bonds of a residue's side chain, by atom names.
+pub(crate) struct ChiAngles {
+    /// The residue in the tables of rotamers: of selenomethionine `MET`, of selenocysteine `CYS`.
+    pub(crate) residue: &'static str,
+    /// N, CA, CB and the atoms after it; chi k is the angle of the k-th to the (k + 3)-th, from 1.
+    pub(crate) chain: Vec<&'static str>,
+    /// All heavy atoms of the side chain, CB first.
+    pub(crate) side_chain: Vec<&'static str>,
+}
+
+impl ChiAngles {
+    /// The turning bonds of a residue by its plain name, `None` where nothing turns.
+    pub(crate) fn of(plain_name: &str) -> Option<Self> {
+        let (residue, selenium) = match plain_name {
+            "MSE" => ("MET", Some("SD")),
+            "SEC" => ("CYS", Some("SG")),
+            other => (other, None),
+        };
+        let (residue, after) = CHAINS.iter().find(|(name, _)| *name == residue)?;
+        let element = |name: &&'static str| if Some(*name) == selenium { "SE" } else { *name };
+        let side_chain = side_chain(plain_name)?;
+        Some(Self {
+            residue,
+            chain: ["N", "CA", "CB"]
+                .into_iter()
+                .chain(after.iter().map(element))
+                .collect(),
+            side_chain: side_chain.iter().map(|atom| atom.name).collect(),
+        })
+    }
+
+    /// How many angles there are.
+    pub(crate) fn count(&self) -> usize {
+        self.chain.len() - 3
+    }
+
+    /// The heavy atoms that angle `k`, from 0, moves: all beyond its bond.
+    pub(crate) fn moved(&self, k: usize) -> impl Iterator<Item = &'static str> {
+        let fixed = self.chain.get(..k + 3).unwrap_or_default();
+        // The only branch that leaves the chain before its last bond.
+        let branch = (self.residue == "ILE" && k == 1).then_some("CG2");
+        let atoms = self.side_chain.iter().copied();
+        atoms.filter(move |name| !fixed.contains(name) && Some(*name) != branch)
+    }
+}
+
+/// Period in radians of angle `k`, from 0: half a turn where the atoms beyond the bond are alike, such as the two sides
+/// of a ring and the oxygens of a carboxylate.
+pub(crate) fn period(residue: &str, k: usize) -> f64 {
+    match (residue, k) {
+        ("PHE" | "TYR" | "ASP", 1) | ("GLU", 2) => std::f64::consts::PI,
+        _ => std::f64::consts::TAU,
+    }
+}
 
 /// Lines of `#`, a header, then residue, phi, psi, probability in thousandths and the angles, in degrees.
 const TABLE: &str = include_str!("rotamers.csv");
@@ -98,7 +181,30 @@ pub fn log_probability(residue: &str, rotamers: &[Rotamer], chi: &[f64]) -> f64 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::chemistry::chi_angles::ChiAngles;
+
+    #[test]
+    fn every_angle_moves_what_lies_beyond_its_bond() {
+        let moved =
+            |name: &str, k: usize| -> Vec<&str> { ChiAngles::of(name).unwrap().moved(k).collect() };
+        assert_eq!(moved("ILE", 0), ["CG1", "CG2", "CD1"]);
+        assert_eq!(moved("ILE", 1), ["CD1"]);
+        assert_eq!(moved("LEU", 1), ["CD1", "CD2"]);
+        assert_eq!(moved("ARG", 3), ["CZ", "NH1", "NH2"]);
+        assert_eq!(moved("MSE", 1), ["SE", "CE"]);
+        assert_eq!(moved("TYR", 1).len(), 6);
+        assert!(ChiAngles::of("ALA").is_none() && ChiAngles::of("PRO").is_none());
+        for (name, after) in CHAINS {
+            let angles = ChiAngles::of(name).unwrap();
+            assert_eq!(angles.count(), after.len());
+            for k in 0..angles.count() {
+                assert!(angles.moved(k).count() > 0, "{name} {k}");
+                assert!(
+                    angles.side_chain.contains(&angles.chain[k + 3]),
+                    "{name} {k}"
+                );
+            }
+        }
+    }
 
     const TURNING: [&str; 17] = [
         "ARG", "ASN", "ASP", "CYS", "GLN", "GLU", "HIS", "ILE", "LEU", "LYS", "MET", "PHE", "SER",

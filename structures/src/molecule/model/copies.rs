@@ -1,32 +1,11 @@
 //! The copies of one molecule that a file holds side by side, atom by atom.
 
-use crate::molecule::model::atom::Atom;
-use crate::molecule::model::molecule::Molecule;
+use crate::Error;
+use crate::molecule::model::{Atom, Molecule};
 use std::collections::HashMap;
 
 /// Fewest atoms that copies must share.
 const SHARED: usize = 3;
-
-/// A molecule that does not consist of so many copies.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum CopiesError {
-    /// Its chains do not divide.
-    #[error("its chains, {chains} in all, make no {copies} copies")]
-    Chains {
-        /// Its chains.
-        chains: usize,
-        /// Copies requested.
-        copies: usize,
-    },
-    /// Chains in the same place of each copy are not alike.
-    #[error("{shared} residues are common to its {copies} copies, which is too few")]
-    Different {
-        /// Copies requested.
-        copies: usize,
-        /// Residues that all of them have.
-        shared: usize,
-    },
-}
 
 impl Molecule {
     /// Positions of the CA and P atoms that all of so many copies have, copy by copy in the same order (Å). Copies
@@ -34,8 +13,8 @@ impl Molecule {
     /// are matched by their number.
     ///
     /// # Errors
-    /// [`CopiesError`] where there are not so many.
-    pub fn copies(&self, copies: usize) -> Result<Vec<Vec<[f64; 3]>>, CopiesError> {
+    /// The chains do not divide into that many copies, or chains in one place of each copy are not alike.
+    pub fn copies(&self, copies: usize) -> Result<Vec<Vec<[f64; 3]>>, Error> {
         let mut place: HashMap<&str, usize> = HashMap::new();
         for atom in &self.atoms {
             let next = place.len();
@@ -43,7 +22,8 @@ impl Molecule {
         }
         let chains = place.len();
         if chains == 0 || !chains.is_multiple_of(copies) {
-            return Err(CopiesError::Chains { chains, copies });
+            let message = format!("its chains, {chains} in all, make no {copies} copies");
+            return Err(Error::input(message));
         }
         let each = chains / copies;
         // By place in the copy, residue and name: each copy's position.
@@ -65,7 +45,9 @@ impl Molecule {
             .collect();
         if shared.len() < SHARED || 2 * shared.len() < order.len() {
             let shared = shared.len();
-            return Err(CopiesError::Different { copies, shared });
+            return Err(Error::input(format!(
+                "{shared} residues are common to its {copies} copies, which is too few"
+            )));
         }
         let copy = |copy: usize| shared.iter().map(|positions| positions[copy]).collect();
         Ok((0..copies).map(copy).collect())
@@ -83,7 +65,7 @@ fn is_backbone(atom: &Atom) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::format::Format;
+    use crate::molecule::model::Format;
 
     /// Residues 1 to `residues` of each chain, x their number and y the chain's place.
     fn molecule(chains: &str, residues: i64) -> Molecule {
@@ -93,15 +75,9 @@ mod tests {
                 residue_name: "ALA".to_owned(),
                 chain: chain.to_string(),
                 residue_number,
-                insertion_code: None,
-                alternate_location: None,
                 element: "C".to_owned(),
                 position: [residue_number as f64, f64::from(place), 0.0],
-                occupancy: 1.0,
-                b_factor: 0.0,
-                hetero: false,
-                radius: 1.7,
-                line: 0,
+                ..Atom::default()
             })
         });
         Molecule::new(atoms.collect(), Format::Pdb)
@@ -125,29 +101,19 @@ mod tests {
 
     #[test]
     fn what_is_no_number_of_copies_is_refused() {
-        let of = |chains: &str, copies| molecule(chains, 4).copies(copies).unwrap_err();
-        assert_eq!(
-            of("ABC", 2),
-            CopiesError::Chains {
-                chains: 3,
-                copies: 2
-            }
-        );
-        assert_eq!(
-            of("", 2),
-            CopiesError::Chains {
-                chains: 0,
-                copies: 2
-            }
-        );
+        let of = |molecule: &Molecule, copies| molecule.copies(copies).unwrap_err().to_string();
+        let refused = of(&molecule("ABC", 4), 2);
+        assert!(refused.contains("3 in all, make no 2 copies"), "{refused}");
+        let refused = of(&molecule("", 4), 2);
+        assert!(refused.contains("0 in all"), "{refused}");
         let mut other = molecule("AB", 4);
         for atom in other.atoms.iter_mut().filter(|atom| atom.chain == "B") {
             atom.residue_number += 100;
         }
-        let different = CopiesError::Different {
-            copies: 2,
-            shared: 0,
-        };
-        assert_eq!(other.copies(2), Err(different));
+        let refused = of(&other, 2);
+        assert!(
+            refused.starts_with("0 residues are common to its 2 copies"),
+            "{refused}"
+        );
     }
 }

@@ -2,13 +2,14 @@
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
+use std::fmt;
+use std::ops::Range;
 
+use crate::molecule::chemistry::{
+    is_amino_acid, is_metal, is_nucleotide, known_as, links_nucleotides, plain_atom_name,
+};
+use crate::molecule::model::{Atom, show_chain};
 use serde::Serialize;
-
-use crate::molecule::chemistry::atom_names::{links_nucleotides, plain_atom_name};
-use crate::molecule::chemistry::other_names::known_as;
-use crate::molecule::chemistry::residues::{is_amino_acid, is_nucleotide};
-use crate::molecule::model::atom::Atom;
 
 /// Kind of a residue, detected from its name and atoms.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
@@ -31,20 +32,15 @@ pub enum GroupKind {
 impl GroupKind {
     /// The kind in words, for a count of one and for more.
     pub(crate) fn words(self, several: bool) -> &'static str {
-        match (self, several) {
-            (Self::AminoAcid, false) => "amino acid",
-            (Self::AminoAcid, true) => "amino acids",
-            (Self::ModifiedResidue, false) => "modified residue",
-            (Self::ModifiedResidue, true) => "modified residues",
-            (Self::Nucleotide, false) => "nucleotide",
-            (Self::Nucleotide, true) => "nucleotides",
-            (Self::Glycan, false) => "glycan",
-            (Self::Glycan, true) => "glycans",
-            (Self::Metal, false) => "metal",
-            (Self::Metal, true) => "metals",
-            (Self::Cofactor, false) => "cofactor or ligand",
-            (Self::Cofactor, true) => "cofactors or ligands",
-        }
+        let words = match self {
+            Self::AminoAcid => ["amino acid", "amino acids"],
+            Self::ModifiedResidue => ["modified residue", "modified residues"],
+            Self::Nucleotide => ["nucleotide", "nucleotides"],
+            Self::Glycan => ["glycan", "glycans"],
+            Self::Metal => ["metal", "metals"],
+            Self::Cofactor => ["cofactor or ligand", "cofactors or ligands"],
+        };
+        words[usize::from(several)]
     }
 }
 
@@ -55,23 +51,50 @@ const GLYCANS: [&str; 30] = [
     "LAT", "TRE", "NGS", "M6P",
 ];
 
-/// Elements whose ions count as metals; no other counts.
-pub(crate) const NON_METALS: [&str; 22] = [
-    "H", "D", "He", "B", "C", "N", "O", "F", "Ne", "Si", "P", "S", "Cl", "Ar", "As", "Se", "Br",
-    "Kr", "Te", "I", "Xe", "At",
-];
+/// Place of a residue in a file: chain, number and insertion code.
+pub(crate) type Place<'a> = (&'a str, i64, Option<char>);
 
-/// Key of a residue in a file: chain, number, insertion code, name.
-pub(crate) type ResidueKey<'a> = (&'a str, i64, Option<char>, &'a str);
+/// Key of a residue in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub(crate) struct ResidueKey<'a> {
+    pub(crate) chain: &'a str,
+    pub(crate) number: i64,
+    pub(crate) insertion: Option<char>,
+    pub(crate) name: &'a str,
+}
+
+impl<'a> ResidueKey<'a> {
+    /// Chain, number and insertion code.
+    pub(crate) fn place(self) -> Place<'a> {
+        (self.chain, self.number, self.insertion)
+    }
+
+    /// The number with the insertion code, e.g. `52A`.
+    pub(crate) fn number_text(self) -> String {
+        number_text(self.number, self.insertion)
+    }
+}
+
+impl fmt::Display for ResidueKey<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let (chain, number) = (show_chain(self.chain), self.number_text());
+        write!(f, "{} {chain} {number}", self.name)
+    }
+}
+
+/// A residue's number with its insertion code, e.g. `52A`.
+pub(crate) fn number_text(number: i64, insertion: Option<char>) -> String {
+    number.to_string() + insertion.map_or(String::new(), String::from).as_str()
+}
 
 /// The residue that an atom belongs to.
 pub(crate) fn residue_key(atom: &Atom) -> ResidueKey<'_> {
-    (
-        &atom.chain,
-        atom.residue_number,
-        atom.insertion_code,
-        &atom.residue_name,
-    )
+    ResidueKey {
+        chain: &atom.chain,
+        number: atom.residue_number,
+        insertion: atom.insertion_code,
+        name: &atom.residue_name,
+    }
 }
 
 /// One residue: its key, the name under which the tables have it, the indices of its atoms, and its kind.
@@ -86,12 +109,10 @@ pub(crate) struct Residue<'a> {
 impl<'a> Residue<'a> {
     fn new(key: ResidueKey<'a>, members: Vec<usize>, atoms: &'a [Atom]) -> Self {
         let names = || {
-            members.iter().filter_map(|&index| {
-                let atom = atoms.get(index)?;
-                Some((atom.name.as_str(), atom.element.as_str()))
-            })
+            let members = members.iter().map(|&index| &atoms[index]);
+            members.map(|atom| (atom.name.as_str(), atom.element.as_str()))
         };
-        let known_as = known_as(key.3, names());
+        let known_as = known_as(key.name, names());
         Self {
             key,
             known_as,
@@ -102,6 +123,11 @@ impl<'a> Residue<'a> {
 }
 
 impl Residue<'_> {
+    /// Its atoms, of those of the molecule.
+    pub(crate) fn members<'b>(&self, atoms: &'b [Atom]) -> impl Iterator<Item = &'b Atom> + Clone {
+        self.atoms.iter().map(|&index| &atoms[index])
+    }
+
     /// Whether this is one of a peptide chain.
     pub(crate) fn is_peptide(&self) -> bool {
         matches!(self.kind, GroupKind::AminoAcid | GroupKind::ModifiedResidue)
@@ -118,57 +144,40 @@ pub(crate) fn residues(atoms: &[Atom]) -> Vec<Residue<'_>> {
     let mut grouped: Vec<(ResidueKey<'_>, Vec<usize>)> = Vec::new();
     // Of residues that come again, the names that they have.
     let mut names: HashMap<usize, HashSet<&str>> = HashMap::new();
-    let mut first = 0;
-    for run in atoms.chunk_by(|a, b| residue_key(a) == residue_key(b)) {
-        let members = first..first + run.len();
-        first = members.end;
-        let Some(key) = run.first().map(residue_key) else {
-            continue;
-        };
-        let of_run = || run.iter().map(|atom| atom.name.as_str());
-        let before = place.get(&key).copied();
-        let before = before.and_then(|at| Some((at, grouped.get_mut(at)?)));
-        let joined = before.filter(|(at, (_, there))| {
-            let name = |&index: &usize| atoms.get(index).map(|atom| atom.name.as_str());
-            let of_residue = || there.iter().filter_map(name).collect();
-            let names = names.entry(*at).or_insert_with(of_residue);
-            let is_new = !of_run().any(|name| names.contains(name));
-            if is_new {
-                names.extend(of_run());
-            }
-            is_new
-        });
-        match joined {
-            Some((_, (_, there))) => there.extend(members),
-            None => {
-                place.insert(key, grouped.len());
-                grouped.push((key, members.collect()));
+    for (key, members) in runs(atoms) {
+        let name = |index: usize| atoms[index].name.as_str();
+        if let Some(&at) = place.get(&key) {
+            let there = &mut grouped[at].1;
+            let of_residue = || there.iter().copied().map(name).collect();
+            let names = names.entry(at).or_insert_with(of_residue);
+            if !members.clone().map(name).any(|name| names.contains(name)) {
+                names.extend(members.clone().map(name));
+                there.extend(members);
+                continue;
             }
         }
+        place.insert(key, grouped.len());
+        grouped.push((key, members.collect()));
     }
-    grouped
-        .into_iter()
-        .map(|(key, members)| Residue::new(key, members, atoms))
-        .collect()
+    let residue = |(key, members)| Residue::new(key, members, atoms);
+    grouped.into_iter().map(residue).collect()
+}
+
+/// Runs of atoms that share a key: the key, and the indices of the atoms.
+fn runs(atoms: &[Atom]) -> impl Iterator<Item = (ResidueKey<'_>, Range<usize>)> {
+    let mut last = 0;
+    let runs = atoms.chunk_by(|a, b| residue_key(a) == residue_key(b));
+    runs.map(move |run| {
+        last += run.len();
+        (residue_key(&run[0]), last - run.len()..last)
+    })
 }
 
 /// The residues of a list of atoms as they follow each other: where chains were merged under one name and numbers
 /// begin again, residues that share a key stay separate.
 pub(crate) fn residue_runs(atoms: &[Atom]) -> Vec<Residue<'_>> {
-    let mut runs = Vec::new();
-    let mut first = 0;
-    for run in atoms.chunk_by(|a, b| residue_key(a) == residue_key(b)) {
-        let last = first + run.len();
-        if let Some(atom) = run.first() {
-            runs.push(Residue::new(
-                residue_key(atom),
-                (first..last).collect(),
-                atoms,
-            ));
-        }
-        first = last;
-    }
-    runs
+    let residue = |(key, members): (_, Range<usize>)| Residue::new(key, members.collect(), atoms);
+    runs(atoms).map(residue).collect()
 }
 
 /// The kind of a residue from its name and its atoms' names and elements.
@@ -194,7 +203,7 @@ pub(crate) fn kind<'a>(
         return GroupKind::Glycan;
     }
     if let [(_, element)] = atoms.as_slice()
-        && !NON_METALS.contains(element)
+        && is_metal(element)
     {
         return GroupKind::Metal;
     }
@@ -258,15 +267,9 @@ mod tests {
             residue_name: residue.to_owned(),
             chain: "A".to_owned(),
             residue_number: number,
-            insertion_code: None,
-            alternate_location: None,
             element: "C".to_owned(),
             position: [0.0; 3],
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.7,
-            line: 1,
+            ..Atom::default()
         };
         let chain = [
             atom("ALA", 1, "N"),

@@ -1,22 +1,36 @@
-//! Data of a molecule: atoms, residues, chains, and what follows from where they stand.
+//! Data of a molecule: atoms, residues, chains, and what follows from their places.
 
-pub(crate) mod accessible;
-pub(crate) mod atom;
-pub(crate) mod buried;
-pub(crate) mod chains;
-pub(crate) mod copies;
-pub(crate) mod cut_ends;
-pub(crate) mod dihedral;
-pub(crate) mod format;
-pub(crate) mod groups;
-pub(crate) mod held_side_chain;
-pub(crate) mod molecule;
-pub(crate) mod polar_atoms;
-pub(crate) mod report;
-pub(crate) mod report_text;
-pub(crate) mod residue_selection;
-pub(crate) mod sequence;
-pub(crate) mod side_chains;
-pub(crate) mod termini;
-pub(crate) mod unresolved;
-pub(crate) mod wording;
+mod chains;
+mod copies;
+mod groups;
+mod molecule;
+mod polar_atoms;
+mod report;
+mod residue_selection;
+mod sequence;
+mod side_chains;
+mod surface;
+mod unresolved;
+
+pub use self::chains::Termini;
+pub use self::groups::GroupKind;
+pub use self::molecule::{Atom, Format, Molecule};
+pub use self::polar_atoms::{HydrogenBonding, hydrogen_bonding};
+pub use self::report::{
+    Altered, AlternateChoice, BuiltAssembly, ChainCount, Confidence, ConfidenceSource, DropKind,
+    Dropped, GroupCount, InputSpec, JoinedModels, OtherName, ReadReport,
+};
+pub use self::residue_selection::{ResidueSelection, UnknownResidues};
+pub use self::sequence::{PeptideChain, PeptideResidue};
+pub use self::side_chains::{HeldSideChain, SideChain, TurningBond};
+pub use self::surface::{PROBE, spiral};
+pub use self::unresolved::UnresolvedResidues;
+
+pub(crate) use self::chains::{Chain, CutEnd, Gap, MAX_CAP_LENGTH, cut_ends};
+pub(crate) use self::groups::{
+    Place, Residue, ResidueKey, number_text, residue_key, residue_runs, residues,
+};
+pub(crate) use self::molecule::{
+    agreeing, count, cross, dot, examples, minus, show_chain, squared_distance,
+};
+pub(crate) use self::residue_selection::Picked;

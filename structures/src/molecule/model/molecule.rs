@@ -1,9 +1,73 @@
-//! A structure as docked.
+//! A structure as docked: its atoms, the format it came in, and the report on reading it.
 
-use crate::molecule::model::atom::Atom;
-use crate::molecule::model::format::Format;
-use crate::molecule::model::report::ReadReport;
-use crate::molecule::{InputSpec, ReadOptions, read};
+use serde::Serialize;
+
+use crate::molecule::chemistry::is_hydrogen;
+use crate::molecule::model::ReadReport;
+
+/// File format of a structure.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Format {
+    /// The fixed-column wwPDB format, version 3.3.
+    Pdb,
+    /// PDBx/mmCIF.
+    Mmcif,
+}
+
+impl Format {
+    /// The usual file name extension, without a dot.
+    pub const fn extension(self) -> &'static str {
+        match self {
+            Self::Pdb => "pdb",
+            Self::Mmcif => "cif",
+        }
+    }
+}
+
+/// One atom as kept from a file.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Atom {
+    /// Atom name without padding, e.g. `CA`.
+    pub name: String,
+    /// Residue name, e.g. `ALA`.
+    pub residue_name: String,
+    /// Author chain name; may be empty in PDB files.
+    pub chain: String,
+    /// Author residue number.
+    pub residue_number: i64,
+    /// Insertion code, if any.
+    pub insertion_code: Option<char>,
+    /// Alternate location that was chosen, if the file names one.
+    pub alternate_location: Option<char>,
+    /// Element symbol as in the periodic table, e.g. `C`, `Zn`.
+    pub element: String,
+    /// Coordinates in the file's frame, in Å.
+    pub position: [f64; 3],
+    /// Occupancy, 0 to 1.
+    pub occupancy: f64,
+    /// Temperature factor, in Å^2.
+    pub b_factor: f64,
+    /// Whether the file's record is HETATM.
+    pub hetero: bool,
+    /// United-atom radius, in Å (see `radii`); all-atom radius where hydrogens were kept.
+    pub radius: f64,
+    /// 1-based line of the record in the (decompressed) file.
+    pub line: usize,
+}
+
+impl Atom {
+    /// Whether this is hydrogen of any mass, which only molecules read with
+    /// [`Hydrogens::Keep`](crate::molecule::Hydrogens::Keep) have.
+    pub fn is_hydrogen(&self) -> bool {
+        is_hydrogen(&self.element)
+    }
+}
+
+/// Square of the distance of two positions (Å²).
+pub(crate) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum()
+}
 
 /// A structure as docked: its kept atoms in file order.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,32 +86,6 @@ pub struct Molecule {
 }
 
 impl Molecule {
-    /// Reads `FILE` (PDB or mmCIF, also gzip-compressed) or `FILE:H,L`, which picks chains, with the default options:
-    /// see [`crate::molecule::read`].
-    ///
-    /// ```
-    /// use knotdock_structures::molecule::Molecule;
-    ///
-    /// # let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
-    /// let molecule = Molecule::read(&format!("{folder}/1ppe_ligand_unbound.pdb"))?;
-    /// assert_eq!(molecule.atoms.len(), 221);
-    /// # Ok::<(), knotdock_structures::Error>(())
-    /// ```
-    ///
-    /// # Errors
-    /// [`Error`](crate::Error) for a file that cannot be read.
-    pub fn read(file: &str) -> Result<Self, crate::Error> {
-        Self::read_with(file, &ReadOptions::default())
-    }
-
-    /// As [`Self::read`], with options.
-    ///
-    /// # Errors
-    /// As [`Self::read`].
-    pub fn read_with(file: &str, options: &ReadOptions) -> Result<Self, crate::Error> {
-        Ok(read(&InputSpec::parse(file)?, options)?)
-    }
-
     /// A molecule made in memory, with an empty report.
     pub fn new(atoms: Vec<Atom>, format: Format) -> Self {
         Self {
@@ -78,4 +116,47 @@ impl Molecule {
             self.atoms.iter().map(|atom| atom.radius).collect(),
         )
     }
+}
+
+/// `1 atom`, `2 atoms`.
+pub(crate) fn count(number: usize, what: &str) -> String {
+    let plural = if number == 1 { "" } else { "s" };
+    format!("{number} {what}{plural}")
+}
+
+/// A chain's name as shown: `_` for the blank one.
+pub(crate) fn show_chain(name: &str) -> &str {
+    if name.is_empty() { "_" } else { name }
+}
+
+/// A count with words for one and for more: `1 atom repeats`, `2 atoms repeat`.
+pub(crate) fn agreeing(number: usize, one: &str, several: &str) -> String {
+    let words = if number == 1 { one } else { several };
+    format!("{number} {words}")
+}
+
+/// The first few of a list, and dots for the rest.
+pub(crate) fn examples<T: AsRef<str>>(items: &[T], shown: usize) -> String {
+    let first: Vec<&str> = items.iter().take(shown).map(AsRef::as_ref).collect();
+    let more = if items.len() > shown { ", ..." } else { "" };
+    first.join(", ") + more
+}
+
+/// Difference of two vectors.
+pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Scalar product.
+pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
+    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
+}
+
+/// Vector product.
+pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
+    [
+        a[1] * b[2] - a[2] * b[1],
+        a[2] * b[0] - a[0] * b[2],
+        a[0] * b[1] - a[1] * b[0],
+    ]
 }

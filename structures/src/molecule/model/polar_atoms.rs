@@ -1,12 +1,12 @@
 //! Atoms that take part in hydrogen bonds, and the direction in which each does.
 //!
 //! Hydrogens are mostly absent from files, so a bond is judged by its heavy atoms: by their distance, and by the
-//! direction in which each points away from what it is bonded to.
+//! direction in which each points away from what it is bonded to. Amino acids give and take by the hydrogens that their
+//! atoms carry (Baker & Hubbard, Prog. Biophys. Mol. Biol. 44 (1984) 97-179). Histidine's nitrogens do both, because
+//! files do not show its protons. So do oxygens and nitrogens of other molecules.
 
-use crate::molecule::chemistry::hydrogen_bonds::hydrogen_bonding;
-use crate::molecule::model::atom::Atom;
-use crate::molecule::model::groups::residues;
-use crate::molecule::model::molecule::Molecule;
+use crate::molecule::chemistry::{is_amino_acid, parent, standard_atom_name};
+use crate::molecule::model::{Atom, Molecule, residues};
 use crate::neighbours::{CellList, Member};
 use crate::polar_atom::PolarAtom;
 
@@ -18,6 +18,38 @@ const SAME: f64 = 0.5;
 const DIRECTED: f64 = 0.3;
 /// Edge of the cells that hold the atoms, Å.
 const CELL_EDGE: f64 = 4.0;
+
+/// What an atom does in hydrogen bonds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct HydrogenBonding {
+    /// Whether it carries a hydrogen to give.
+    pub donor: bool,
+    /// Whether it has electrons to take one.
+    pub acceptor: bool,
+}
+
+/// What an atom does in hydrogen bonds, `None` of one that has no part in them.
+pub fn hydrogen_bonding(
+    residue_name: &str,
+    atom_name: &str,
+    element: &str,
+) -> Option<HydrogenBonding> {
+    if !matches!(element, "N" | "O") {
+        return None;
+    }
+    let (donor, acceptor) = if is_amino_acid(residue_name) {
+        let residue = parent(residue_name);
+        match (residue, standard_atom_name(residue, atom_name)) {
+            ("PRO", "N") => (false, false),
+            ("SER", "OG") | ("THR", "OG1") | ("TYR", "OH") | ("HIS", "ND1" | "NE2") => (true, true),
+            _ if element == "N" => (true, false),
+            _ => (false, true),
+        }
+    } else {
+        (true, true)
+    };
+    (donor || acceptor).then_some(HydrogenBonding { donor, acceptor })
+}
 
 impl Molecule {
     /// The part of each atom in hydrogen bonds; of carbon, sulphur and hydrogen none.
@@ -31,19 +63,19 @@ impl Molecule {
         let mut polar = vec![PolarAtom::default(); self.atoms.len()];
         for residue in &residues(&self.atoms) {
             for &index in &residue.atoms {
-                let (Some(atom), Some(polar)) = (self.atoms.get(index), polar.get_mut(index))
-                else {
-                    continue;
-                };
-                let Some(part) = hydrogen_bonding(residue.known_as, &atom.name, &atom.element)
-                else {
-                    continue;
-                };
-                *polar = PolarAtom {
-                    donates: part.donor,
-                    accepts: part.acceptor,
-                    direction: direction(&cells, atom.position),
-                };
+                let Atom {
+                    name,
+                    element,
+                    position,
+                    ..
+                } = &self.atoms[index];
+                if let Some(part) = hydrogen_bonding(residue.known_as, name, element) {
+                    polar[index] = PolarAtom {
+                        donates: part.donor,
+                        accepts: part.acceptor,
+                        direction: direction(&cells, *position),
+                    };
+                }
             }
         }
         polar
@@ -106,5 +138,20 @@ ATOM      5  N   GLY A   2      -1.000   0.000  60.000  1.00  0.00           N
         assert_eq!(polar[1], PolarAtom::default());
         assert_eq!(polar[4].direction, [0.0; 3]);
         assert!(polar[0].may_bond(&polar[3]) && !polar[0].may_bond(&polar[4]));
+    }
+
+    #[test]
+    fn hydrogens_decide() {
+        let of = |residue, atom, element| {
+            hydrogen_bonding(residue, atom, element).map(|role| (role.donor, role.acceptor))
+        };
+        assert_eq!(of("ALA", "N", "N"), Some((true, false)));
+        assert_eq!(of("PRO", "N", "N"), None);
+        assert_eq!(of("ASP", "OD2", "O"), Some((false, true)));
+        assert_eq!(of("HIE", "ND1", "N"), Some((true, true)));
+        assert_eq!(of("TYR", "OH", "O"), Some((true, true)));
+        assert_eq!(of("LYS", "NZ", "N"), Some((true, false)));
+        assert_eq!(of("CYS", "SG", "S"), None);
+        assert_eq!(of("HEM", "O1A", "O"), Some((true, true)));
     }
 }

@@ -1,13 +1,34 @@
 //! Report on reading a file: what was kept, dropped and altered, and the warnings.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
+use std::fmt;
+use std::path::{Path, PathBuf};
 
+use crate::molecule::model::{Atom, CutEnd, Format, GroupKind, Residue, count, show_chain};
 use serde::Serialize;
 
-use crate::molecule::InputSpec;
-use crate::molecule::model::cut_ends::CutEnd;
-use crate::molecule::model::format::Format;
-use crate::molecule::model::groups::GroupKind;
+/// A structure file and the chains and residues requested of it.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct InputSpec {
+    /// The file.
+    pub path: PathBuf,
+    /// Chains to keep by their author names, case-sensitive, `_` for the blank name, and residues of chains, as parts
+    /// of a [`ResidueSelection`](crate::molecule::ResidueSelection): `H`, `H:1-120`; all chains when `None`.
+    pub chains: Option<Vec<String>>,
+    /// Model to read, 1 for the first in the file; where `None`, [`ReadOptions`](crate::molecule::ReadOptions) choose it.
+    pub model: Option<usize>,
+}
+
+impl InputSpec {
+    /// All chains of a file.
+    pub fn whole(path: impl Into<PathBuf>) -> Self {
+        Self {
+            path: path.into(),
+            chains: None,
+            model: None,
+        }
+    }
+}
 
 /// Report on reading one file.
 ///
@@ -117,6 +138,17 @@ pub enum DropKind {
     Model,
 }
 
+impl DropKind {
+    /// The name under which the report counts an atom dropped for this reason; nothing for kinds that are counted as one.
+    pub(crate) fn counted_by(self, atom: &Atom) -> &str {
+        match self {
+            Self::Chain | Self::OtherResidue | Self::Assembly => show_chain(&atom.chain),
+            Self::Hydrogen | Self::Model => "",
+            _ => &atom.residue_name,
+        }
+    }
+}
+
 /// Atoms dropped for one reason.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
 pub struct Dropped {
@@ -144,9 +176,6 @@ pub struct Altered {
     pub alternate_locations: Vec<AlternateChoice>,
     /// Models that were not read.
     pub models_ignored: usize,
-    /// Whether all models lie beside one another, so that those that were not read are parts of what was.
-    #[serde(skip)]
-    pub models_are_parts: bool,
 }
 
 /// The alternate location chosen for a residue.
@@ -165,30 +194,69 @@ pub struct AlternateChoice {
 impl ReadReport {
     /// Counts atoms as dropped; `name` says what they belong to.
     pub(crate) fn drop_atoms(&mut self, kind: DropKind, name: &str, atoms: usize) {
-        if atoms == 0 {
-            return;
+        let at = self.dropped.iter().position(|entry| entry.kind == kind);
+        let at = at.unwrap_or(self.dropped.len());
+        if at == self.dropped.len() {
+            let names = BTreeMap::new();
+            self.dropped.push(Dropped {
+                kind,
+                atoms: 0,
+                names,
+            });
         }
-        let at = match self.dropped.iter().position(|entry| entry.kind == kind) {
-            Some(at) => at,
-            None => {
-                self.dropped.push(Dropped {
-                    kind,
+        let entry = &mut self.dropped[at];
+        entry.atoms += atoms;
+        match entry.names.get_mut(name) {
+            Some(count) => *count += atoms,
+            None if name.is_empty() => {}
+            None => drop(entry.names.insert(name.to_owned(), atoms)),
+        }
+    }
+
+    /// Counts the residues that are kept.
+    pub(crate) fn count(&mut self, residues: &[Residue<'_>]) {
+        let mut places: HashMap<&str, usize> = HashMap::new();
+        let mut groups: BTreeMap<(GroupKind, &str), [usize; 2]> = BTreeMap::new();
+        let mut other_names: BTreeMap<(&str, &str), usize> = BTreeMap::new();
+        for residue in residues {
+            let (key, atoms) = (residue.key, residue.atoms.len());
+            let place = *places.entry(key.chain).or_insert(self.chains.len());
+            if place == self.chains.len() {
+                let name = key.chain.to_owned();
+                self.chains.push(ChainCount {
+                    name,
+                    residues: 0,
                     atoms: 0,
-                    names: BTreeMap::new(),
                 });
-                self.dropped.len() - 1
             }
-        };
-        if let Some(entry) = self.dropped.get_mut(at) {
-            entry.atoms += atoms;
-            match entry.names.get_mut(name) {
-                Some(count) => *count += atoms,
-                None if name.is_empty() => {}
-                None => {
-                    entry.names.insert(name.to_string(), atoms);
-                }
+            self.chains[place].residues += 1;
+            self.chains[place].atoms += atoms;
+            if residue.kind != GroupKind::AminoAcid {
+                let [residues, all] = groups.entry((residue.kind, key.name)).or_default();
+                *residues += 1;
+                *all += atoms;
+            }
+            if residue.known_as != key.name {
+                *other_names.entry((key.name, residue.known_as)).or_default() += 1;
             }
         }
+        let groups = groups
+            .into_iter()
+            .map(|((kind, name), [residues, atoms])| GroupCount {
+                name: name.to_owned(),
+                kind,
+                residues,
+                atoms,
+            });
+        self.groups = groups.collect();
+        let other_names = other_names
+            .into_iter()
+            .map(|((name, read_as), residues)| OtherName {
+                name: name.to_owned(),
+                read_as: read_as.to_owned(),
+                residues,
+            });
+        self.other_names = other_names.collect();
     }
 
     /// Atoms dropped in all.
@@ -243,4 +311,214 @@ pub struct Confidence {
     pub residues: usize,
     /// Those of them with a pLDDT below 50.
     pub below_50: usize,
+}
+
+/// Joins the first few of a list and counts the rest.
+fn list(items: impl Iterator<Item = String>) -> String {
+    first(8, items)
+}
+
+/// Joins the first so many of a list and counts the rest.
+fn first(shown: usize, items: impl Iterator<Item = String>) -> String {
+    let items: Vec<String> = items.collect();
+    let rest = items.len().saturating_sub(shown);
+    let more = if rest > 0 {
+        format!(" and {rest} more")
+    } else {
+        String::new()
+    };
+    items[..items.len() - rest].join(", ") + &more
+}
+
+impl fmt::Display for ReadReport {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let atoms: usize = self.chains.iter().map(|chain| chain.atoms).sum();
+        let chains = self.chains.iter().map(|chain| {
+            format!(
+                "{} ({})",
+                show_chain(&chain.name),
+                count(chain.residues, "residue")
+            )
+        });
+        write!(
+            f,
+            "{}: {}, {}, {}: {}",
+            self.file,
+            count(atoms, "atom"),
+            count(self.residues(), "residue"),
+            count(self.chains.len(), "chain"),
+            list(chains)
+        )?;
+        let groups = self.groups.iter().map(|group| {
+            let words = group.kind.words(group.residues != 1);
+            format!("{} {} ({words})", group.residues, group.name)
+        });
+        line(f, "kept", list(groups))?;
+        let residues = self.other_names.iter().map(|other| other.residues).sum();
+        let names = self
+            .other_names
+            .iter()
+            .map(|other| format!("{} {} as {}", other.residues, other.name, other.read_as));
+        let read = format!("{} under other names read", count(residues, "residue"));
+        line(f, &read, list(names))?;
+        line(f, "dropped", list(self.dropped.iter().map(show_dropped)))?;
+        line(f, "altered", self.altered.show())?;
+        if let Some(BuiltAssembly {
+            id,
+            chains,
+            chains_in_file,
+            on_axes,
+        }) = &self.assembly
+        {
+            let chains = count(*chains, "chain");
+            write!(
+                f,
+                "\n  biological assembly {id}: {chains}, of {chains_in_file} in the file"
+            )?;
+            if *on_axes > 0 {
+                write!(f, "; {} on its axes kept once", count(*on_axes, "atom"))?;
+            }
+        }
+        if let Some(joined) = &self.joined_models {
+            write!(
+                f,
+                "\n  {} read as one molecule",
+                count(joined.models, "model")
+            )?;
+            if joined.on_axes > 0 {
+                let atoms = count(joined.on_axes, "atom");
+                write!(f, "; {atoms} in one place in several kept once")?;
+            }
+        }
+        if let Some(confidence) = &self.confidence {
+            let source = match confidence.source {
+                ConfidenceSource::Header => "as the file says",
+                ConfidenceSource::Values => "detected from its B column",
+                ConfidenceSource::User => "as --min-plddt says",
+            };
+            write!(
+                f,
+                "\n  a predicted model, {source}: mean pLDDT {:.1}, {} of {} below 50",
+                confidence.mean,
+                confidence.below_50,
+                count(confidence.residues, "residue")
+            )?;
+        }
+        self.warnings
+            .iter()
+            .try_for_each(|warning| write!(f, "\n  warning: {warning}"))
+    }
+}
+
+/// Writes a line of the report, unless it is empty.
+fn line(f: &mut fmt::Formatter<'_>, head: &str, text: String) -> fmt::Result {
+    match text.as_str() {
+        "" => Ok(()),
+        text => write!(f, "\n  {head}: {text}"),
+    }
+}
+
+impl ReadReport {
+    /// The report in a line, without warnings: the file's name, what is kept, and what is dropped or in doubt.
+    pub fn brief(&self) -> String {
+        const SHOWN: usize = 3;
+        let file = Path::new(&self.file);
+        let name = file
+            .file_name()
+            .unwrap_or(file.as_os_str())
+            .to_string_lossy();
+        let residues = count(self.residues(), "residue");
+        let chains = if self.chains.len() == 1 {
+            "chain"
+        } else {
+            "chains"
+        };
+        let names = list(
+            self.chains
+                .iter()
+                .map(|chain| show_chain(&chain.name).to_owned()),
+        );
+        let mut parts = vec![format!("{name}: {residues} in {chains} {names}")];
+        if !self.groups.is_empty() {
+            let groups = self.groups.iter();
+            let groups = groups.map(|group| format!("{} {}", group.residues, group.name));
+            parts.push(format!("kept {}", first(SHOWN, groups)));
+        }
+        if !self.dropped.is_empty() {
+            let dropped = self.dropped.iter().map(show_dropped);
+            parts.push(format!("dropped {}", first(SHOWN, dropped)));
+        }
+        if self.altered.models_ignored > 0 {
+            let models = count(self.altered.models_ignored, "other model");
+            parts.push(format!("{models} ignored"));
+        }
+        if let Some(built) = &self.assembly {
+            parts.push(format!("biological assembly {}", built.id));
+        }
+        if let Some(joined) = &self.joined_models {
+            parts.push(format!("{} as one molecule", count(joined.models, "model")));
+        }
+        if let Some(confidence) = &self.confidence {
+            parts.push(format!("predicted, mean pLDDT {:.1}", confidence.mean));
+        }
+        parts.join("; ")
+    }
+
+    fn residues(&self) -> usize {
+        self.chains.iter().map(|chain| chain.residues).sum()
+    }
+}
+
+fn show_dropped(dropped: &Dropped) -> String {
+    let names = list(dropped.names.keys().map(|name| show_chain(name).to_owned()));
+    let atoms = |of: &str| format!("{} of {of}", count(dropped.atoms, "atom"));
+    let named = |of: &str| format!("{} ({names})", atoms(of));
+    match dropped.kind {
+        DropKind::Chain => named("other chains"),
+        DropKind::OtherResidue => atoms(&format!("other residues of {names}")),
+        DropKind::Assembly => named("chains outside the assembly"),
+        DropKind::Hydrogen => count(dropped.atoms, "hydrogen"),
+        DropKind::Water => count(dropped.atoms, "water atom"),
+        DropKind::Residue => named("residues not wanted"),
+        DropKind::PseudoAtom => {
+            let each = dropped
+                .names
+                .iter()
+                .map(|(name, count)| format!("{count} {name}"));
+            format!("{} ({})", count(dropped.atoms, "pseudo-atom"), list(each))
+        }
+        DropKind::Additive => named("additives"),
+        DropKind::Hetatm => named("HETATM records"),
+        DropKind::AlternateLocation => atoms("alternate locations"),
+        DropKind::LowConfidence => named(&format!(
+            "{} of low pLDDT",
+            count(dropped.names.len(), "residue")
+        )),
+        DropKind::Model => atoms("other models"),
+    }
+}
+
+impl Altered {
+    /// What was altered, in words.
+    fn show(&self) -> String {
+        let counted = |number: usize, what: &str, verb: &str| {
+            (number, format!("{} {verb}", count(number, what)))
+        };
+        let choices = self.alternate_locations.len();
+        let chosen = format!(
+            "alternate locations chosen in {}",
+            count(choices, "residue")
+        );
+        let segids = "chains named by the segid, columns 73-76".to_owned();
+        let parts = [
+            counted(self.elements_derived, "element", "derived"),
+            counted(self.elements_corrected, "element", "corrected"),
+            counted(self.defaults_filled, "occupancy or B value", "filled"),
+            (self.chains_from_segids, segids),
+            (choices, chosen),
+            counted(self.models_ignored, "other model", "ignored"),
+        ];
+        let parts = parts.into_iter().filter(|(number, _)| *number > 0);
+        parts.map(|(_, text)| text).collect::<Vec<_>>().join(", ")
+    }
 }

@@ -1,8 +1,6 @@
 //! Residues as a user picks them: `H:1-50,52A,L`.
 
-use crate::molecule::model::groups::residue_runs;
-use crate::molecule::model::molecule::Molecule;
-use crate::molecule::model::wording::show_chain;
+use crate::molecule::model::{Molecule, residue_runs, show_chain};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -287,8 +285,7 @@ impl UnknownResidues {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::atom::Atom;
-    use crate::molecule::model::format::Format;
+    use crate::molecule::model::{Atom, Format};
 
     fn molecule() -> Molecule {
         let residues = [
@@ -305,14 +302,9 @@ mod tests {
             chain: chain.to_owned(),
             residue_number,
             insertion_code,
-            alternate_location: None,
             element: "C".to_owned(),
             position: [0.0; 3],
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.9,
-            line: 1,
+            ..Atom::default()
         };
         Molecule::new(residues.into_iter().map(atom).collect(), Format::Pdb)
     }

@@ -2,9 +2,8 @@
 
 use std::ops::Range;
 
-use crate::molecule::chemistry::residues::parent;
-use crate::molecule::model::groups::{Residue, residue_runs};
-use crate::molecule::model::molecule::Molecule;
+use crate::molecule::chemistry::one_letter;
+use crate::molecule::model::{Molecule, Residue, residue_runs};
 
 /// A run of amino acids that stand in one chain of a file, one after another.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -40,10 +39,10 @@ impl Molecule {
     /// under one name, it goes on.
     pub fn peptide_chains(&self) -> Vec<PeptideChain<'_>> {
         let runs = residue_runs(&self.atoms);
-        runs.chunk_by(|a, b| a.key.0 == b.key.0 && a.is_peptide() == b.is_peptide())
+        runs.chunk_by(|a, b| a.key.chain == b.key.chain && a.is_peptide() == b.is_peptide())
             .filter(|run| run.first().is_some_and(Residue::is_peptide))
             .map(|run| PeptideChain {
-                name: run.first().map_or("", |residue| residue.key.0),
+                name: run.first().map_or("", |residue| residue.key.chain),
                 residues: run.iter().map(peptide_residue).collect(),
             })
             .collect()
@@ -51,51 +50,19 @@ impl Molecule {
 }
 
 fn peptide_residue(residue: &Residue<'_>) -> PeptideResidue {
-    let (_, number, insertion, _) = residue.key;
     // The atoms of a run stand together.
     let start = residue.atoms.first().copied().unwrap_or(0);
     PeptideResidue {
-        number: match insertion {
-            Some(insertion) => format!("{number}{insertion}"),
-            None => number.to_string(),
-        },
+        number: residue.key.number_text(),
         letter: one_letter(residue.known_as),
         atoms: start..start + residue.atoms.len(),
-    }
-}
-
-/// One letter of an amino acid by its residue name, X of one outside the twenty.
-pub fn one_letter(residue_name: &str) -> char {
-    match parent(residue_name) {
-        "ALA" => 'A',
-        "ARG" => 'R',
-        "ASN" => 'N',
-        "ASP" => 'D',
-        "CYS" | "SEC" => 'C',
-        "GLN" => 'Q',
-        "GLU" => 'E',
-        "GLY" => 'G',
-        "HIS" => 'H',
-        "ILE" => 'I',
-        "LEU" => 'L',
-        "LYS" => 'K',
-        "MET" | "MSE" => 'M',
-        "PHE" => 'F',
-        "PRO" => 'P',
-        "SER" => 'S',
-        "THR" => 'T',
-        "TRP" => 'W',
-        "TYR" => 'Y',
-        "VAL" => 'V',
-        _ => 'X',
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::molecule::model::atom::Atom;
-    use crate::molecule::model::format::Format;
+    use crate::molecule::model::{Atom, Format};
 
     #[test]
     fn chains_are_runs_of_amino_acids_under_one_name() {
@@ -105,14 +72,9 @@ mod tests {
             chain: chain.to_owned(),
             residue_number: number,
             insertion_code: insertion,
-            alternate_location: None,
             element: "C".to_owned(),
             position: [0.0; 3],
-            occupancy: 1.0,
-            b_factor: 0.0,
-            hetero: false,
-            radius: 1.9,
-            line: 1,
+            ..Atom::default()
         };
         let atoms = vec![
             residue("H", "GLY", 52, None),

@@ -2,14 +2,15 @@
 
 use std::collections::HashMap;
 
-use crate::molecule::chemistry::charged_termini::BOND;
-use crate::molecule::chemistry::chi_angles::ChiAngles;
-use crate::molecule::chemistry::residues::{backbone_type, parent, standard_atom_name};
-use crate::molecule::model::atom::{Atom, squared_distance};
-use crate::molecule::model::dihedral::{dihedral, is_left_handed, turned};
-use crate::molecule::model::groups::{Residue, residues};
-use crate::molecule::model::held_side_chain::{HeldSideChain, SideChainBonds};
-use crate::molecule::model::molecule::Molecule;
+use serde::Serialize;
+
+use crate::molecule::chemistry::{
+    BOND, ChiAngles, backbone_type, is_metal, parent, standard_atom_name,
+};
+use crate::molecule::model::{
+    Atom, Molecule, Residue, cross, dot, minus, residues, squared_distance,
+};
+use crate::neighbours::{CellList, Member};
 
 /// phi and psi in radians where an end of a chain leaves one undefined: those of an extended chain, -75 and 145
 /// degrees.
@@ -118,11 +119,10 @@ impl Molecule {
                 (!is_left_handed(n, ca, c, cb)).then_some(HeldSideChain::Mirrored)
             })
             .or_else(|| bonds.held(residue, &atoms));
-        let (_, number, insertion, name) = residue.key;
         Some(SideChain {
-            chain: residue.key.0.to_owned(),
-            number: insertion.map_or_else(|| number.to_string(), |code| format!("{number}{code}")),
-            name: name.to_owned(),
+            chain: residue.key.chain.to_owned(),
+            number: residue.key.number_text(),
+            name: residue.key.name.to_owned(),
             residue: angles.residue,
             bonds: if held == Some(HeldSideChain::Incomplete) {
                 Vec::new()
@@ -217,6 +217,148 @@ impl Molecule {
             .filter(|&index| !Atom::is_hydrogen(&self.atoms[index]))
             .min_by(|&a, &b| from(a).total_cmp(&from(b)))
     }
+}
+
+/// Longest distance in Å of a metal from an atom that binds it.
+const METAL: f64 = 2.8;
+/// Longest distance in Å of the sulphurs of a disulphide, 2.05 Å in good structures.
+const DISULPHIDE: f64 = 2.5;
+/// Longest covalent bond in Å between carbon, nitrogen and oxygen, and with a larger atom.
+const BONDS: [f64; 2] = [1.7, 2.0];
+
+/// Why a side chain must stay as it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "snake_case")]
+pub enum HeldSideChain {
+    /// Atoms are missing.
+    Incomplete,
+    /// It has atoms that its residue does not have, or one twice.
+    OtherAtoms,
+    /// The file has it in more than one place.
+    AlternateLocations,
+    /// The residue is of the D form, of which no rotamers are known.
+    Mirrored,
+    /// It binds a metal.
+    Metal,
+    /// Its sulphur is bonded to another's.
+    Disulphide,
+    /// It is bonded to another residue or molecule.
+    Bonded,
+}
+
+impl HeldSideChain {
+    /// The reason in words, which follow a residue's name and a comma.
+    pub fn words(self) -> &'static str {
+        match self {
+            Self::Incomplete => "incomplete",
+            Self::OtherAtoms => "with atoms of its own",
+            Self::AlternateLocations => "in alternate locations",
+            Self::Mirrored => "of the D form",
+            Self::Metal => "bound to a metal",
+            Self::Disulphide => "in a disulphide",
+            Self::Bonded => "bonded to another residue",
+        }
+    }
+}
+
+/// A heavy atom that a side chain may be bonded to: its place in the molecule.
+struct SideChainBonds<'a> {
+    atoms: &'a [Atom],
+    /// Which residue each atom belongs to.
+    residue_of: Vec<usize>,
+    cells: CellList<usize>,
+    origin: [f64; 3],
+}
+
+impl<'a> SideChainBonds<'a> {
+    /// Sorts the heavy atoms of a molecule, whose residues are `groups`.
+    fn new(atoms: &'a [Atom], groups: &[Residue<'_>]) -> Self {
+        let mut residue_of = vec![usize::MAX; atoms.len()];
+        for (place, group) in groups.iter().enumerate() {
+            for &index in &group.atoms {
+                residue_of[index] = place;
+            }
+        }
+        // An offset of the whole costs no cells.
+        let origin = atoms.first().map_or([0.0; 3], |atom| atom.position);
+        let all = atoms.iter().enumerate();
+        let heavy = all.filter(|(_, atom)| !atom.is_hydrogen());
+        let members = heavy.map(|(item, atom)| Member {
+            position: minus(atom.position, origin),
+            item,
+        });
+        Self {
+            atoms,
+            residue_of,
+            cells: CellList::new(members.collect(), METAL),
+            origin,
+        }
+    }
+
+    /// Whether one of these atoms of a residue is bonded outside of it, and to what. The first reason in the order of
+    /// [`HeldSideChain`] counts.
+    fn held(&self, residue: &Residue<'_>, side_chain: &[usize]) -> Option<HeldSideChain> {
+        let mut held: Option<HeldSideChain> = None;
+        let own = residue.atoms.first().map(|&first| self.residue_of[first]);
+        for atom in side_chain.iter().map(|&index| &self.atoms[index]) {
+            let center = minus(atom.position, self.origin);
+            self.cells.visit_within(center, METAL, |&other, _| {
+                if Some(self.residue_of[other]) != own
+                    && let Some(reason) = bond(atom, &self.atoms[other])
+                {
+                    held = Some(held.map_or(reason, |held| held.min(reason)));
+                }
+            });
+        }
+        held
+    }
+}
+
+/// What bonds an atom of a side chain to an atom of another residue.
+fn bond(atom: &Atom, other: &Atom) -> Option<HeldSideChain> {
+    let square = squared_distance(atom.position, other.position);
+    let within = |reach: f64| square <= reach * reach;
+    let element = other.element.as_str();
+    if !element.is_empty() && is_metal(element) {
+        let binds = matches!(atom.element.as_str(), "N" | "O" | "S" | "Se");
+        return (binds && within(METAL)).then_some(HeldSideChain::Metal);
+    }
+    let is_sulphur = |atom: &Atom| matches!(atom.element.as_str(), "S" | "Se");
+    if is_sulphur(atom) && is_sulphur(other) {
+        return within(DISULPHIDE).then_some(HeldSideChain::Disulphide);
+    }
+    let is_small = |atom: &Atom| matches!(atom.element.as_str(), "C" | "N" | "O");
+    let reach = BONDS[usize::from(!(is_small(atom) && is_small(other)))];
+    within(reach).then_some(HeldSideChain::Bonded)
+}
+
+/// Dihedral angle in radians, -pi to pi, of four places: clockwise is positive when looking from the second to the
+/// third (IUPAC-IUB, J. Mol. Biol. 52 (1970) 1-17). Zero where three of them lie in a line.
+fn dihedral([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
+    let (first, axis, last) = (minus(b, a), minus(c, b), minus(d, c));
+    let (left, right) = (cross(first, axis), cross(axis, last));
+    (dot(axis, axis).sqrt() * dot(first, right)).atan2(dot(left, right))
+}
+
+/// The place of a point after a right-handed turn by `angle` (radians) about the axis from `from` to `to`; the point
+/// itself where the two coincide. Source: Rodrigues' formula.
+fn turned(point: [f64; 3], from: [f64; 3], to: [f64; 3], angle: f64) -> [f64; 3] {
+    let axis = minus(to, from);
+    let length = dot(axis, axis).sqrt();
+    if length == 0.0 {
+        return point;
+    }
+    let axis = axis.map(|x| x / length);
+    let arm = minus(point, from);
+    let (sin, cos) = angle.sin_cos();
+    let across = cross(axis, arm);
+    let along = dot(axis, arm) * (1.0 - cos);
+    std::array::from_fn(|k| from[k] + arm[k] * cos + across[k] * sin + axis[k] * along)
+}
+
+/// Whether an amino acid is of the L form: seen from CA with the side chain up, CO-R-N read clockwise.
+fn is_left_handed(n: [f64; 3], ca: [f64; 3], c: [f64; 3], cb: [f64; 3]) -> bool {
+    dot(cross(minus(n, ca), minus(c, ca)), minus(cb, ca)) > 0.0
 }
 
 #[cfg(test)]

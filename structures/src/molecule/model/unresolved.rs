@@ -4,16 +4,15 @@
 //! meets them. Their places are not known, so many conformers are sampled for each segment, clear of the body and of
 //! themselves. Where all conformers pass the space is filled; where few pass it is mostly free.
 
-mod loop_sampler;
-
+use rand_pcg::Pcg32;
+use rand_pcg::rand_core::Rng;
 use serde::{Serialize, Serializer};
 
 use crate::Conformers;
-use crate::molecule::model::atom::Atom;
-use crate::molecule::model::chains::{Chain, Gap};
-use crate::molecule::model::groups::{Residue, residues};
-use crate::molecule::model::molecule::Molecule;
-use crate::molecule::model::unresolved::loop_sampler::LoopSampler;
+use crate::molecule::model::{
+    Atom, Chain, Gap, Molecule, Residue, cross, minus, residues, squared_distance,
+};
+use crate::neighbours::SpatialHash;
 
 /// Residues sampled beyond a terminus: as many as count as flexible on its resolved side.
 const PAST_END: usize = 8;
@@ -93,13 +92,190 @@ impl Molecule {
         let other = if about == "N" { "C" } else { "N" };
         let at = |name: &str| self.atom(residue, name).map(|atom: &Atom| atom.position);
         let (origin, alpha, other) = (at(about)?, at("CA")?, at(other)?);
-        let axes = loop_sampler::axes(origin, alpha, other)?;
+        let axes = axes(origin, alpha, other)?;
         Some(Conformers {
             origin,
             axes,
             traces: Vec::new(),
         })
     }
+}
+
+/// Distances in Å: of a CA from the C before or the N after it in the adjacent residues, and of two CA in a row.
+///
+/// Engh and Huber, Acta Cryst. A47 (1991) 392-400: bonds of 1.33, 1.46 and 1.52 Å at 122° and 117°.
+const FIRST: f64 = 2.45;
+const NEXT: f64 = 3.8;
+
+/// Cosines of the largest and smallest bend between two steps in a row: 100° and 30°.
+///
+/// These are angles at a CA of 80° and 150°; helices have 91°, strands 120° to 130°.
+const TURN: [f64; 2] = [-0.17, 0.87];
+
+/// Smallest distances in Å of a CA from atoms of the body and from an earlier CA, and from atoms of the residues at the
+/// segment's ends.
+const ROOM: f64 = 4.0;
+const ROOM_BESIDE: f64 = 3.0;
+
+/// Conformers sampled for a segment, and the fewest that are of use: fewer say little of where it may be.
+const CONFORMERS: usize = 64;
+const MIN_CONFORMERS: usize = 8;
+
+/// Directions tried for a residue before a trial ends: without a target, and with one. Then the trials of a segment at
+/// most.
+const TRIES: [usize; 2] = [12, 60];
+const MAX_TRIALS: usize = 5000;
+
+/// Trials after which a segment is given up: that has no first residue by then, and that has no whole conformer by
+/// then.
+const GIVE_UP_AFTER: [usize; 2] = [100, 1000];
+
+/// Distance in Å by which a residue brings a loop towards its target at most, and that of the last CA from the target.
+/// Straight chains, with 3.8 Å a residue, close no gap.
+const CLOSING: f64 = 3.6;
+const CLOSED: f64 = 2.9;
+
+/// Samples conformers that keep clear of a body.
+struct LoopSampler {
+    positions: Vec<[f64; 3]>,
+    cells: SpatialHash<usize>,
+}
+
+/// Data that all trials of one segment share.
+struct Trace<'a> {
+    sampler: &'a LoopSampler,
+    frame: &'a Conformers,
+    /// The atoms of the residues that the segment begins and ends at.
+    anchors: &'a [usize],
+    /// The N that it ends at, in the segment's own frame.
+    target: Option<[f64; 3]>,
+    length: usize,
+}
+
+impl LoopSampler {
+    fn new(positions: Vec<[f64; 3]>) -> Self {
+        Self {
+            cells: SpatialHash::of_points(positions.iter().copied(), ROOM),
+            positions,
+        }
+    }
+
+    /// Conformers of `length` residues from a frame's origin on, to the N at `target` (file's frame, Å) if one is
+    /// given.
+    ///
+    /// `anchors` are the atoms of the residues at the segment's ends. `None` where the body leaves no room.
+    fn traces(
+        &self,
+        mut frame: Conformers,
+        anchors: &[usize],
+        target: Option<[f64; 3]>,
+        length: usize,
+    ) -> Option<Conformers> {
+        let trace = Trace {
+            sampler: self,
+            anchors,
+            target: target.map(|point| frame.local(point)),
+            frame: &frame,
+            length,
+        };
+        // The same seed for each segment, so that conformers depend on the body alone.
+        let mut random = Pcg32::new(0, 0);
+        let mut traces = Vec::with_capacity(CONFORMERS);
+        let mut longest = 0;
+        for trial in 0..MAX_TRIALS {
+            let found = [longest, traces.len()];
+            let has_nothing = |(limit, found)| trial >= limit && found == 0;
+            if traces.len() == CONFORMERS || GIVE_UP_AFTER.into_iter().zip(found).any(has_nothing) {
+                break;
+            }
+            let grown = trace.grow(&mut random);
+            longest = longest.max(grown.len());
+            traces.extend((grown.len() == length).then_some(grown));
+        }
+        frame.traces = traces;
+        (frame.traces.len() >= MIN_CONFORMERS).then_some(frame)
+    }
+}
+
+impl Trace<'_> {
+    /// Grows one trace; it is shorter than the segment where it runs into something.
+    fn grow(&self, random: &mut Pcg32) -> Vec<[f64; 3]> {
+        let mut trace: Vec<[f64; 3]> = Vec::with_capacity(self.length);
+        let mut direction = None;
+        let tries = TRIES[usize::from(self.target.is_some())];
+        while trace.len() < self.length {
+            let last = trace.last().copied().unwrap_or([0.0; 3]);
+            let step = if trace.is_empty() { FIRST } else { NEXT };
+            let room = (0..tries).find_map(|_| {
+                let along = unit(random);
+                let next: [f64; 3] = std::array::from_fn(|axis| last[axis] + step * along[axis]);
+                let bends = direction.is_none_or(|before| turns(before, along));
+                (bends && self.closes(next, trace.len()) && self.is_free(next, &trace))
+                    .then_some((next, along))
+            });
+            let Some((next, along)) = room else {
+                break;
+            };
+            // The first step is no line between two CA atoms.
+            direction = (!trace.is_empty()).then_some(along);
+            trace.push(next);
+        }
+        trace
+    }
+
+    /// Whether the residues left of a loop can still reach its target.
+    fn closes(&self, alpha: [f64; 3], place: usize) -> bool {
+        self.target.is_none_or(|target| {
+            let left = (self.length - 1 - place) as f64;
+            let reach = CLOSING * left + CLOSED;
+            squared_distance(alpha, target) <= reach * reach
+        })
+    }
+
+    /// Whether a CA keeps clear of the body and of the trace up to it.
+    fn is_free(&self, alpha: [f64; 3], trace: &[[f64; 3]]) -> bool {
+        let bonded = trace.is_empty() || (self.target.is_some() && trace.len() + 1 == self.length);
+        let at = self.frame.in_file(alpha);
+        let sampler = self.sampler;
+        let free_of_body = sampler.cells.around(at).copied().all(|atom| {
+            let squared = squared_distance(sampler.positions[atom], at);
+            squared >= ROOM * ROOM
+                || self.anchors.contains(&atom) && (bonded || squared >= ROOM_BESIDE * ROOM_BESIDE)
+        });
+        let earlier = trace.split_last().map_or(&[][..], |(_, earlier)| earlier);
+        free_of_body
+            && earlier
+                .iter()
+                .all(|other| squared_distance(*other, alpha) >= ROOM * ROOM)
+    }
+}
+
+/// Whether a chain may bend so from one step to the next.
+fn turns(before: [f64; 3], along: [f64; 3]) -> bool {
+    let cosine: f64 = before.iter().zip(&along).map(|(a, b)| a * b).sum();
+    (TURN[0]..=TURN[1]).contains(&cosine)
+}
+
+/// A unit vector, uniform over all directions.
+fn unit(random: &mut Pcg32) -> [f64; 3] {
+    let mut share = || f64::from(random.next_u32()) / f64::from(u32::MAX);
+    let z = 2.0 * share() - 1.0;
+    let (sine, cosine) = (std::f64::consts::TAU * share()).sin_cos();
+    let radius = (1.0 - z * z).max(0.0).sqrt();
+    [radius * cosine, radius * sine, z]
+}
+
+/// Axes of a right-handed frame: from `first` on to `origin`, and across to where `other` lies; `None` if all are on
+/// one line.
+fn axes(origin: [f64; 3], first: [f64; 3], other: [f64; 3]) -> Option<[[f64; 3]; 3]> {
+    let x = normalized(minus(origin, first))?;
+    let z = normalized(cross(x, minus(other, first)))?;
+    Some([x, cross(z, x), z])
+}
+
+fn normalized(vector: [f64; 3]) -> Option<[f64; 3]> {
+    let length = squared_distance(vector, [0.0; 3]).sqrt();
+    (length > 1e-3).then(|| vector.map(|x| x / length))
 }
 
 #[cfg(test)]

@@ -2,16 +2,15 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use crate::molecule::model::atom::{Atom, squared_distance};
-use crate::molecule::model::report::{AlternateChoice, DropKind, ReadReport};
-use crate::molecule::read::policy::AlternateLocation;
+use crate::molecule::model::{
+    AlternateChoice, Atom, DropKind, Place, number_text, residue_key, squared_distance,
+};
+use crate::molecule::read::{AlternateLocation, Drops};
 
-/// What distinguishes a position in the chain from all others. The residue's name is left out: alternate locations may
-/// differ in it (microheterogeneity), and one choice must hold for both names.
-type Position<'a> = (&'a str, i64, Option<char>);
-
-fn position(atom: &Atom) -> Position<'_> {
-    (&atom.chain, atom.residue_number, atom.insertion_code)
+/// A position in a chain. The residue's name is left out: alternate locations may differ in it (microheterogeneity), and
+/// one choice must hold for both names.
+fn place(atom: &Atom) -> Place<'_> {
+    residue_key(atom).place()
 }
 
 /// Stands for the blank location where atoms without a letter are one of the alternatives.
@@ -53,13 +52,10 @@ impl<'a> Lettered<'a> {
 /// their letter was left out. Else it is the blank location. The whole residue belongs to that if letters have another
 /// residue on its backbone.
 fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
-    let mut lettered: HashMap<Position<'_>, Lettered<'_>> = HashMap::new();
+    let mut lettered: HashMap<Place<'_>, Lettered<'_>> = HashMap::new();
     for atom in atoms {
         if let Some(letter) = atom.alternate_location {
-            lettered
-                .entry(position(atom))
-                .or_default()
-                .add(atom, letter);
+            lettered.entry(place(atom)).or_default().add(atom, letter);
         }
     }
     let mut unnamed = HashMap::new();
@@ -67,13 +63,13 @@ fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
         return unnamed;
     }
     // Residues of which one atom shows that they are an alternative as a whole.
-    let mut whole: HashSet<(Position<'_>, &str)> = HashSet::new();
+    let mut whole: HashSet<(Place<'_>, &str)> = HashSet::new();
     let blank = || {
         let all = atoms.iter().enumerate();
         all.filter(|(_, atom)| atom.alternate_location.is_none())
     };
     for (index, atom) in blank() {
-        let Some(there) = lettered.get(&position(atom)) else {
+        let Some(there) = lettered.get(&place(atom)) else {
             continue;
         };
         let within = |other: &Atom, limit: f64| {
@@ -101,11 +97,11 @@ fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
         } else if letters.is_empty()
             && of_residue(false).any(|(other, _)| within(other, MAX_BACKBONE_DISPLACEMENT))
         {
-            whole.insert((position(atom), &atom.residue_name));
+            whole.insert((place(atom), &atom.residue_name));
         }
     }
     for (index, atom) in blank() {
-        if whole.contains(&(position(atom), atom.residue_name.as_str())) {
+        if whole.contains(&(place(atom), atom.residue_name.as_str())) {
             unnamed.insert(index, vec![UNNAMED]);
         }
     }
@@ -116,38 +112,28 @@ fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
 /// atoms with a letter are the blank one's. Kept is the one named by the policy where it is offered, otherwise the
 /// location of the highest occupancy summed over its atoms, the alphabetically first of equals.
 pub(crate) fn choose(
-    atoms: Vec<Atom>,
+    mut atoms: Vec<Atom>,
     policy: AlternateLocation,
-    report: &mut ReadReport,
-    dropped: &mut dyn FnMut(Atom, DropKind),
+    drops: &mut Drops,
 ) -> Vec<Atom> {
-    let mut offers: HashMap<Position<'_>, BTreeMap<char, f64>> = HashMap::new();
-    let mut order: Vec<Position<'_>> = Vec::new();
-    let unnamed = unnamed_alternatives(&atoms);
-    let locations = |index: usize, atom: &Atom| -> Vec<char> {
-        match (atom.alternate_location, unnamed.get(&index)) {
-            (Some(letter), _) => vec![letter],
-            (None, Some(own)) => own.clone(),
-            (None, None) => Vec::new(),
-        }
-    };
+    // The locations of each atom that has any, by its index.
+    let mut locations = unnamed_alternatives(&atoms);
+    let lettered = atoms.iter().enumerate();
+    locations.extend(lettered.filter_map(|(i, atom)| Some((i, vec![atom.alternate_location?]))));
+    let mut offers: HashMap<Place<'_>, BTreeMap<char, f64>> = HashMap::new();
+    let mut order: Vec<Place<'_>> = Vec::new();
     for (index, atom) in atoms.iter().enumerate() {
-        for location in locations(index, atom) {
-            let offered = offers.entry(position(atom)).or_insert_with(|| {
-                order.push(position(atom));
+        for &location in locations.get(&index).into_iter().flatten() {
+            let offered = offers.entry(place(atom)).or_insert_with(|| {
+                order.push(place(atom));
                 BTreeMap::new()
             });
             *offered.entry(location).or_insert(0.0) += atom.occupancy;
         }
     }
-    if order.is_empty() {
-        return atoms;
-    }
-    let mut chosen: HashMap<Position<'_>, char> = HashMap::new();
+    let mut chosen: HashMap<Place<'_>, char> = HashMap::new();
     for at in order {
-        let Some(offered) = offers.get(&at) else {
-            continue;
-        };
+        let offered = &offers[&at];
         // Occupancies are decimals: sums of the same ones in another order may differ in the last bits, which is no
         // preference.
         let best = offered.values().copied().fold(f64::MIN, f64::max);
@@ -161,31 +147,31 @@ pub(crate) fn choose(
         };
         chosen.insert(at, location);
         if offered.len() > 1 {
-            report.altered.alternate_locations.push(AlternateChoice {
-                chain: at.0.to_string(),
-                residue: format!("{}{}", at.1, at.2.map_or(String::new(), String::from)),
-                chosen: location,
-                offered: offered.keys().collect(),
-            });
+            drops
+                .report
+                .altered
+                .alternate_locations
+                .push(AlternateChoice {
+                    chain: at.0.to_owned(),
+                    residue: number_text(at.1, at.2),
+                    chosen: location,
+                    offered: offered.keys().collect(),
+                });
         }
     }
-    let keep: Vec<bool> = atoms
-        .iter()
-        .enumerate()
-        .map(|(index, atom)| {
-            let own = locations(index, atom);
-            let chosen = chosen.get(&position(atom));
-            own.is_empty() || chosen.is_some_and(|chosen| own.contains(chosen))
-        })
-        .collect();
-    let mut kept = Vec::with_capacity(atoms.len());
-    for (atom, keep) in atoms.into_iter().zip(keep) {
-        if keep {
-            kept.push(atom);
-        } else {
-            report.drop_atoms(DropKind::AlternateLocation, &atom.residue_name, 1);
-            dropped(atom, DropKind::AlternateLocation);
+    let is_kept = |(index, atom): (usize, &Atom)| {
+        let chosen = || chosen.get(&place(atom));
+        let own = locations.get(&index);
+        own.is_none_or(|own| chosen().is_some_and(|chosen| own.contains(chosen)))
+    };
+    let kept: Vec<bool> = atoms.iter().enumerate().map(is_kept).collect();
+    let mut kept = kept.into_iter();
+    atoms.retain(|atom| {
+        let is_kept = kept.next() == Some(true);
+        if !is_kept {
+            drops.add(atom, DropKind::AlternateLocation);
         }
-    }
-    kept
+        is_kept
+    });
+    atoms
 }

@@ -3,31 +3,10 @@
 use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
-use crate::molecule::model::residue_selection::ResidueSelection;
-use crate::molecule::read::error::ReadError;
-
-/// A structure file and the chains and residues requested of it.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct InputSpec {
-    /// The file.
-    pub path: PathBuf,
-    /// Chains to keep by their author names, case-sensitive, `_` for the blank name, and residues of chains, as parts
-    /// of a [`ResidueSelection`]: `H`, `H:1-120`; all chains when `None`.
-    pub chains: Option<Vec<String>>,
-    /// Model to read, 1 for the first in the file; where `None`, [`ReadOptions`](super::policy::ReadOptions) choose it.
-    pub model: Option<usize>,
-}
+use crate::Error;
+use crate::molecule::model::{InputSpec, ResidueSelection};
 
 impl InputSpec {
-    /// All chains of a file.
-    pub fn whole(path: impl Into<PathBuf>) -> Self {
-        Self {
-            path: path.into(),
-            chains: None,
-            model: None,
-        }
-    }
-
     /// Reads `file`, `file:H,L` or `file:H:1-120,L`.
     ///
     /// A path that exists as written is never cut, nor is a Windows drive (`C:\file.pdb`) or a colon that has a path
@@ -35,26 +14,19 @@ impl InputSpec {
     /// file the first that has chains and residues behind it. Repeated chains count once.
     ///
     /// # Errors
-    /// [`ReadError::Unnamed`] without a file's name, [`ReadError::Specification`] when what follows the colon names
-    /// neither chains nor residues, as in `file.pdb:`, `file.pdb:H,,L` or `file.pdb:H:x`.
-    pub fn parse(text: &str) -> Result<Self, ReadError> {
-        let (path, names) = match cut(text) {
-            Some((path, names)) => (path, Some(names)),
-            None => (text, None),
-        };
+    /// The file has no name, or what follows the colon names neither chains nor residues, as in `file.pdb:`,
+    /// `file.pdb:H,,L` or `file.pdb:H:x`.
+    pub fn parse(text: &str) -> Result<Self, Error> {
+        let (path, names) = cut(text).map_or((text, None), |(path, names)| (path, Some(names)));
         // A shell's unset variable leaves "" or ":A".
         if path.is_empty() {
-            return Err(ReadError::Unnamed {
-                text: text.to_string(),
-            });
+            return Err(Error::input(format!("'{text}' names no file")).help(REMEDY));
         }
         let Some(names) = names else {
             return Ok(Self::whole(path));
         };
         if !is_selection(names) {
-            return Err(ReadError::Specification {
-                text: text.to_string(),
-            });
+            return Err(bad_selection(text));
         }
         let mut chains: Vec<String> = Vec::new();
         for name in names.split(',').map(str::trim) {
@@ -79,6 +51,18 @@ impl InputSpec {
     }
 }
 
+/// Remedy of a specification that names no file, no chain or no residues.
+const REMEDY: &str = "write FILE to read all chains, FILE:H,L to pick chains by their author names, or FILE:H:1-120,L to \
+                      pick residues";
+
+/// The error of a specification whose chains and residues cannot be read.
+pub(crate) fn bad_selection(text: &str) -> Error {
+    Error::input(format!(
+        "'{text}' names no chain and no residues after the colon"
+    ))
+    .help(REMEDY)
+}
+
 /// Whether a text names chains or residues.
 fn is_selection(text: &str) -> bool {
     text.parse::<ResidueSelection>().is_ok()
@@ -89,18 +73,13 @@ fn cut(text: &str) -> Option<(&str, &str)> {
     if Path::new(text).exists() {
         return None;
     }
-    let mut cuts = text
-        .char_indices()
-        .filter(|(_, c)| *c == ':')
-        .map(|(at, _)| {
-            let (path, names) = text.split_at(at);
-            (path, names.get(1..).unwrap_or(""))
-        });
+    let colons = text.match_indices(':');
+    let cuts = colons.map(|(at, _)| (&text[..at], &text[at + 1..]));
     let is_cut = |(path, names): &(&str, &str)| {
         let is_drive = path.len() == 1 && path.starts_with(|c: char| c.is_ascii_alphabetic());
         !names.contains(['/', '\\']) && !is_drive
     };
-    let cuts: Vec<(&str, &str)> = cuts.by_ref().filter(is_cut).collect();
+    let cuts: Vec<(&str, &str)> = cuts.filter(is_cut).collect();
     let is_there = |(path, _): &&(&str, &str)| Path::new(path).is_file();
     let there = cuts.iter().rev().find(is_there);
     let readable = || cuts.iter().find(|(_, names)| is_selection(names));
@@ -108,7 +87,7 @@ fn cut(text: &str) -> Option<(&str, &str)> {
 }
 
 impl FromStr for InputSpec {
-    type Err = ReadError;
+    type Err = Error;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
         Self::parse(text)
@@ -203,7 +182,7 @@ mod tests {
     fn a_colon_needs_chains() {
         for text in ["a.pdb:", "a.pdb:H,,L", "a.pdb:H,"] {
             let error = InputSpec::parse(text).unwrap_err();
-            assert!(matches!(error, ReadError::Specification { .. }), "{text}");
+            assert!(error.message().contains("names no chain"), "{text}");
         }
     }
 }

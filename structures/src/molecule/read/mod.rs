@@ -1,67 +1,115 @@
 //! Reading a structure, from path to molecule.
 
-pub(crate) mod alternate;
-pub(crate) mod assemblies;
-pub(crate) mod assembly;
-pub(crate) mod coincidence;
-pub(crate) mod completeness;
-pub(crate) mod confidence;
-pub(crate) mod error;
-pub(crate) mod foreign;
-pub(crate) mod input;
-pub(crate) mod lines;
-pub(crate) mod models;
-pub(crate) mod overlap;
-pub(crate) mod parse;
-pub(crate) mod policy;
-pub(crate) mod pseudo_atoms;
-pub(crate) mod record_filter;
-pub(crate) mod scope;
-pub(crate) mod select;
-pub(crate) mod source;
-pub(crate) mod wanted;
+mod alternate;
+mod assembly;
+mod cif;
+mod confidence;
+mod input;
+mod mmcif;
+mod models;
+mod pdb;
+mod pdb_columns;
+mod pdbtbx;
+mod policy;
+mod pseudo_atoms;
+mod record;
+mod select;
+mod source;
+mod warnings;
 
-use std::collections::{BTreeMap, HashMap};
+pub use self::confidence::LOW;
+pub use self::policy::{AlternateLocation, Hetatm, Hydrogens, ModelChoice, ReadOptions, Waters};
+pub use self::source::file_bytes;
+use crate::molecule::model::InputSpec;
+
+use self::input::bad_selection;
+use self::models::Relation;
+use self::record::{COORDINATE, FileContents, Record, coordinate, field_error, is_place, number};
+
 use std::path::Path;
 
-use crate::molecule::chemistry::{ligands, radii};
-use crate::molecule::model::atom::Atom;
-use crate::molecule::model::format::Format;
-use crate::molecule::model::groups::{GroupKind, Residue, residues};
-use crate::molecule::model::molecule::Molecule;
-use crate::molecule::model::report::{ChainCount, DropKind, GroupCount, OtherName, ReadReport};
-use crate::molecule::model::wording::count;
-use crate::molecule::read::error::ReadError;
-use crate::molecule::read::input::InputSpec;
-use crate::molecule::read::parse::Parsed;
-use crate::molecule::read::policy::{ModelChoice, ReadOptions};
-use crate::molecule::read::record_filter::record::FilteredRecords;
+use crate::Error;
+use crate::molecule::chemistry::{all_atom_radius, radius};
+use crate::molecule::model::{Atom, DropKind, Format, Molecule, ReadReport, residues};
 
 /// An atom of the model that was read, and what became of it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtomFate {
-    /// The atom; its radius is 0 and its element may be empty where it was dropped.
+    /// The atom; its radius is 0 and its element may be empty if it was dropped.
     pub atom: Atom,
-    /// Why it was dropped; nothing where it was kept.
+    /// Why it was dropped; nothing if it was kept.
     pub dropped: Option<DropKind>,
+}
+
+/// Atoms that are dropped: counted in the report, and listed where their fates are requested.
+#[derive(Debug, Default)]
+pub(crate) struct Drops {
+    pub(crate) report: ReadReport,
+    fates: Option<Vec<AtomFate>>,
+}
+
+impl Drops {
+    /// Drops an atom.
+    pub(crate) fn add(&mut self, atom: &Atom, kind: DropKind) {
+        self.add_named(atom, kind, kind.counted_by(atom));
+    }
+
+    /// Drops an atom that the report counts under a name.
+    pub(crate) fn add_named(&mut self, atom: &Atom, kind: DropKind, name: &str) {
+        self.report.drop_atoms(kind, name, 1);
+        if let Some(fates) = &mut self.fates {
+            fates.push(AtomFate {
+                atom: atom.clone(),
+                dropped: Some(kind),
+            });
+        }
+    }
 }
 
 /// Reads the atoms to dock from a PDB or mmCIF file, plain or gzip-compressed.
 ///
 /// By default it keeps the first model, the chains requested, atoms of zero occupancy, cofactors, metals, glycans,
 /// modified residues and nucleic acids. It leaves out hydrogens, waters and a known set of buffer and cryo additives.
-/// Of alternate locations it keeps one a residue: that of the highest summed occupancy, and the alphabetically first of
-/// equals.
+/// Of alternate locations it keeps one per residue: that of the highest summed occupancy, and the alphabetically first
+/// of equals.
 ///
 /// The molecule's report says what was kept, dropped and altered.
 ///
 /// # Errors
-/// [`ReadError`], with the file, the line where there is one, and a remedy.
-pub fn read(spec: &InputSpec, options: &ReadOptions) -> Result<Molecule, ReadError> {
+/// With the file, the line where there is one, and a remedy.
+pub fn read(spec: &InputSpec, options: &ReadOptions) -> Result<Molecule, Error> {
     read_bytes(spec, source::file_bytes(&spec.path)?, options)
 }
 
-/// As [`read`], of a file's bytes ([`file_bytes`](super::file_bytes)).
+impl Molecule {
+    /// Reads `FILE` (PDB or mmCIF, also gzip-compressed) or `FILE:H,L`, which picks chains, by the default options:
+    /// see [`read`].
+    ///
+    /// ```
+    /// use knotdock_structures::molecule::Molecule;
+    ///
+    /// # let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+    /// let molecule = Molecule::read(&format!("{folder}/1ppe_ligand_unbound.pdb"))?;
+    /// assert_eq!(molecule.atoms.len(), 221);
+    /// # Ok::<(), knotdock_structures::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn read(file: &str) -> Result<Self, Error> {
+        Self::read_with(file, &ReadOptions::default())
+    }
+
+    /// As [`Self::read`], by other options.
+    ///
+    /// # Errors
+    /// As [`read`].
+    pub fn read_with(file: &str, options: &ReadOptions) -> Result<Self, Error> {
+        read(&InputSpec::parse(file)?, options)
+    }
+}
+
+/// Reads a molecule from a file's bytes ([`file_bytes`](super::file_bytes)), as [`read`] does.
 ///
 /// # Errors
 /// As [`read`].
@@ -69,19 +117,23 @@ pub fn read_bytes(
     spec: &InputSpec,
     bytes: Vec<u8>,
     options: &ReadOptions,
-) -> Result<Molecule, ReadError> {
-    read_telling(spec, bytes, options, &mut |_, _| {})
+) -> Result<Molecule, Error> {
+    let read = read_parts(spec, bytes, options, None);
+    read.map(|(molecule, _)| molecule)
+        .map_err(|error| error.at(&spec.path))
 }
 
 /// Number of models in a file's bytes, at least 1.
 ///
 /// # Errors
-/// [`ReadError`] where the bytes are of no known format, or their records cannot be told apart.
-pub fn model_count(file: &Path, bytes: Vec<u8>) -> Result<usize, ReadError> {
-    let source = source::unpack(file, bytes)?;
-    let format = source::format_of(file, &source.text).ok_or_else(|| not_a_structure(file))?;
-    let filtered = filter(file, format, &source.text, ModelChoice::Number(1))?;
-    Ok(filtered.models.max(1))
+/// The bytes are of no known format, or their records cannot be told apart.
+pub fn model_count(file: &Path, bytes: Vec<u8>) -> Result<usize, Error> {
+    let count = || {
+        let source = source::unpack(file, bytes)?;
+        let contents = read_text(source.format, &source.text, ModelChoice::Number(1))?;
+        Ok(contents.models.max(1))
+    };
+    count().map_err(|error: Error| error.at(file))
 }
 
 /// Reads like [`read`], and returns the fate of every atom of the model in file order, kept or dropped.
@@ -91,11 +143,11 @@ pub fn model_count(file: &Path, bytes: Vec<u8>) -> Result<usize, ReadError> {
 pub fn read_with_fates(
     spec: &InputSpec,
     options: &ReadOptions,
-) -> Result<(Molecule, Vec<AtomFate>), ReadError> {
+) -> Result<(Molecule, Vec<AtomFate>), Error> {
     read_bytes_with_fates(spec, source::file_bytes(&spec.path)?, options)
 }
 
-/// As [`read_with_fates`], of a file's bytes.
+/// Reads a file's bytes as [`read_with_fates`] does.
 ///
 /// # Errors
 /// As [`read`].
@@ -103,275 +155,153 @@ pub fn read_bytes_with_fates(
     spec: &InputSpec,
     bytes: Vec<u8>,
     options: &ReadOptions,
-) -> Result<(Molecule, Vec<AtomFate>), ReadError> {
-    let mut fates = Vec::new();
-    let molecule = read_telling(spec, bytes, options, &mut |atom, kind| {
-        fates.push(AtomFate {
-            atom,
-            dropped: Some(kind),
-        });
-    })?;
-    fates.extend(molecule.atoms.iter().map(|atom| AtomFate {
-        atom: atom.clone(),
+) -> Result<(Molecule, Vec<AtomFate>), Error> {
+    let read = read_parts(spec, bytes, options, Some(Vec::new()));
+    let (molecule, fates) = read.map_err(|error| error.at(&spec.path))?;
+    let mut fates = fates.unwrap_or_default();
+    let kept = molecule.atoms.iter().cloned();
+    fates.extend(kept.map(|atom| AtomFate {
+        atom,
         dropped: None,
     }));
-    fates.sort_by_key(|entry| entry.atom.line);
+    fates.sort_by_key(|fate| fate.atom.line);
     Ok((molecule, fates))
 }
 
-/// Reads a file's bytes, and calls `dropped` for each atom that is left out.
-fn read_telling(
+/// Reads a file's bytes, and adds to `fates` the atoms that are dropped.
+fn read_parts(
     spec: &InputSpec,
     bytes: Vec<u8>,
     options: &ReadOptions,
-    dropped: &mut dyn FnMut(Atom, DropKind),
-) -> Result<Molecule, ReadError> {
-    let file = spec.path.as_path();
-    let source = source::unpack(file, bytes)?;
-    let format = source::format_of(file, &source.text).ok_or_else(|| not_a_structure(file))?;
+    fates: Option<Vec<AtomFate>>,
+) -> Result<(Molecule, Option<Vec<AtomFate>>), Error> {
+    let source = source::unpack(&spec.path, bytes)?;
+    let format = source.format;
     let model = spec.model.map_or(options.model, ModelChoice::Number);
-    let mut filtered = filter(file, format, &source.text, model)?;
-    if let Some(model) = spec.model.filter(|&model| model > filtered.models.max(1)) {
-        return Err(ReadError::UnknownModel {
-            file: file.to_path_buf(),
-            model,
-            models: filtered.models.max(1),
-        });
+    let mut contents = read_text(format, &source.text, model)?;
+    let models = contents.models.max(1);
+    if let Some(model) = spec.model.filter(|&model| model > models) {
+        return Err(unknown_model(model, models));
     }
     drop(source.text);
-    if filtered.records.is_empty() {
-        return Err(if filtered.recognised {
-            ReadError::NoAtoms {
-                file: file.to_path_buf(),
-            }
-        } else {
-            not_a_structure(file)
+    if contents.records.is_empty() {
+        return Err(match contents.recognised {
+            true => Error::input("the file holds no atoms")
+                .help("give a file with ATOM or HETATM records, or an _atom_site table"),
+            false => source::not_a_structure(&spec.path),
         });
     }
-
-    let mut report = ReadReport {
-        file: file.display().to_string(),
-        source: Some(spec.clone()),
-        format: Some(format),
-        compressed: source.compressed,
-        ..ReadReport::default()
+    let mut records = pdbtbx::records(format, &mut contents)?;
+    let mut drops = Drops {
+        report: std::mem::take(&mut contents.report),
+        fates,
     };
-    let is_joined = model == ModelChoice::All && filtered.models > 1;
-    report_filtered(&filtered, is_joined, &mut report);
-    let provenance = filtered.provenance;
-    let (models, ignored) = (filtered.models, std::mem::take(&mut filtered.ignored));
-    let assemblies = std::mem::take(&mut filtered.assemblies);
-    let chain_breaks = std::mem::take(&mut filtered.chain_breaks);
-    let mut parsed = parse::parse(file, format, filtered)?;
-    let is_assembly = options.assembly.is_some() && !assemblies.list.is_empty();
-    if is_joined && is_assembly {
-        return Err(ReadError::AssemblyOfModels {
-            file: file.to_path_buf(),
-        });
+    drops.report.file = spec.path.display().to_string();
+    drops.report.source = Some(spec.clone());
+    drops.report.format = Some(format);
+    drops.report.compressed = source.compressed;
+    let is_joined = model == ModelChoice::All && models > 1;
+    if is_joined && options.assembly.is_some() && !contents.assemblies.is_empty() {
+        let message = "--assembly builds copies of one model, and --model all reads all models as one molecule";
+        return Err(Error::input(message).help("leave one of the two out"));
     }
     if models > 1 {
-        parsed = resolve_models(parsed, models, &ignored, is_joined, &mut report);
+        records = resolve_models(records, &contents, is_joined, &mut drops.report);
     }
-    if let Some(wanted) = &options.assembly {
-        parsed = assembly::build(file, parsed, &assemblies, wanted, &mut report, dropped)?;
+    if let Some(id) = &options.assembly {
+        records = assembly::build(records, &contents.assemblies, id, &mut drops)?;
     } else if spec.chains.is_none() && !is_joined {
-        report
+        drops
+            .report
             .warnings
-            .extend(assembly::warning(&parsed, &assemblies));
+            .extend(contents.assemblies.warning(&records));
     }
-    let atoms = select::select(
-        file,
-        parsed,
-        spec.chains.as_deref(),
-        options,
-        provenance,
-        &mut report,
-        dropped,
-    )?;
-    Ok(Molecule {
+    let provenance = contents.provenance;
+    let chains = spec.chains.as_deref();
+    let atoms = select::select(records, chains, options, provenance, &mut drops)?;
+    let chain_breaks = contents.chain_breaks;
+    let molecule = Molecule {
         chain_breaks,
-        ..finish(format, atoms, report)
-    })
-}
-
-/// The error of a file whose text shows no known format.
-fn not_a_structure(file: &Path) -> ReadError {
-    match foreign::by_name(file) {
-        Some(foreign) => ReadError::Foreign {
-            file: file.to_path_buf(),
-            what: foreign.what,
-            remedy: foreign.remedy,
-        },
-        None => ReadError::NotAStructure {
-            file: file.to_path_buf(),
-        },
-    }
-}
-
-/// Filters the records of the models that are wanted; model 1 names the only one of a file, whatever was asked for.
-fn filter(
-    file: &Path,
-    format: Format,
-    text: &str,
-    model: ModelChoice,
-) -> Result<FilteredRecords, ReadError> {
-    let filter = |model: ModelChoice| match format {
-        Format::Pdb => record_filter::pdb::filter(file, text, model),
-        Format::Mmcif => record_filter::mmcif::filter(file, text, model),
+        ..finish(format, atoms, drops.report)
     };
-    let filtered = filter(model)?;
+    Ok((molecule, drops.fates))
+}
+
+fn unknown_model(model: usize, models: usize) -> Error {
+    Error::input(format!("there is no model {model}; the file has {models}")).help(
+        "ask for one of the models that the file has, which count from 1 in the order of the file, or for --model all",
+    )
+}
+
+/// Reads the models that are wanted; the only one of a file whatever number was requested.
+fn read_text(format: Format, text: &str, model: ModelChoice) -> Result<FileContents, Error> {
+    let read = |model| match format {
+        Format::Pdb => pdb::read(text, model),
+        Format::Mmcif => mmcif::read(text, model),
+    };
+    let contents = read(model)?;
     match model {
-        ModelChoice::Number(number) if filtered.models == 1 && number != 1 => {
-            filter(ModelChoice::Number(1))
+        ModelChoice::Number(number) if contents.models == 1 && number != 1 => {
+            read(ModelChoice::Number(1))
         }
         ModelChoice::Number(number)
-            if filtered.models > 1 && !(1..=filtered.models).contains(&number) =>
+            if contents.models > 1 && !(1..=contents.models).contains(&number) =>
         {
-            Err(ReadError::UnknownModel {
-                file: file.to_path_buf(),
-                model: number,
-                models: filtered.models,
-            })
+            Err(unknown_model(number, contents.models))
         }
-        _ => Ok(filtered),
-    }
-}
-
-/// Reports what the filter left out and altered.
-fn report_filtered(filtered: &FilteredRecords, is_joined: bool, report: &mut ReadReport) {
-    if !is_joined {
-        report.altered.models_ignored = filtered.models.saturating_sub(1);
-    }
-    report.altered.defaults_filled = filtered.defaults_filled;
-    report.altered.chains_from_segids = filtered.chains_from_segids;
-    report.drop_atoms(DropKind::Model, "", filtered.atoms_ignored);
-
-    if let Some((line, name)) = filtered.other_blocks.first() {
-        report.warnings.push(format!(
-            "only the first structure is read: {} with atoms, the first, data_{name}, at line {line}",
-            count(filtered.other_blocks.len(), "further data block")
-        ));
-    }
-    if let Some(first) = filtered.displaced.first() {
-        report.warnings.push(format!(
-            "{} out of the columns of the format, the first at line {first}: moved and read",
-            count(filtered.displaced.len(), "atom record")
-        ));
+        _ => Ok(contents),
     }
 }
 
 /// Joins several models where all are read, and warns where parts of a molecule are ignored.
 fn resolve_models(
-    parsed: Vec<Parsed>,
-    models: usize,
-    ignored: &[(usize, [f64; 3])],
+    records: Vec<Record>,
+    contents: &FileContents,
     is_joined: bool,
     report: &mut ReadReport,
-) -> Vec<Parsed> {
-    let read = parsed.iter();
-    let read = read.map(|record| (record.raw.model, record.exact.position));
-    let relation = models::relation(read.chain(ignored.iter().copied()));
+) -> Vec<Record> {
+    let read = records
+        .iter()
+        .map(|record| (record.model, record.atom.position));
+    let relation = models::relation(read.chain(contents.ignored.iter().copied()));
     if is_joined {
-        if relation == models::Relation::Alternatives {
+        if relation == Relation::Alternatives {
             report.warnings.push(models::ALTERNATIVES_JOINED.to_owned());
         }
-        let (joined, shown) = models::join(parsed, relation);
+        let (joined, shown) = models::join(records, relation);
         report.joined_models = Some(shown);
         return joined;
     }
-    if relation == models::Relation::Parts {
-        report.altered.models_are_parts = true;
-        let read = parsed.first().map_or(1, |record| record.raw.model);
-        report
-            .warnings
-            .push(models::warning(models, read, ignored.len()));
+    report.altered.models_ignored = contents.models - 1;
+    if relation == Relation::Parts {
+        let read = records.first().map_or(1, |record| record.model);
+        let warning = models::warning(contents.models, read, contents.ignored.len());
+        report.warnings.push(warning);
     }
-    parsed
+    records
 }
 
 /// Gives the atoms their radii and the report its counts.
 fn finish(format: Format, mut atoms: Vec<Atom>, mut report: ReadReport) -> Molecule {
     let groups = residues(&atoms);
-    report
-        .warnings
-        .extend(completeness::warnings(&atoms, &groups));
-    report.warnings.extend(ligands::warning(&atoms, &groups));
-    report.warnings.extend(overlap::warnings(&atoms, &groups));
-    report.warnings.extend(scope::warnings(&atoms, &groups));
-    report.chains = count_chains(&groups);
-    report.groups = count_groups(&groups);
-    report.other_names = count_other_names(&groups);
+    report.warnings.extend(warnings::warnings(&atoms, &groups));
+    report.count(&groups);
     let all_atom = atoms.iter().any(Atom::is_hydrogen);
-    let mut all_radii = vec![0.0; atoms.len()];
+    let mut radii = vec![0.0; atoms.len()];
     for group in &groups {
         for &index in &group.atoms {
-            if let (Some(atom), Some(radius)) = (atoms.get(index), all_radii.get_mut(index)) {
-                *radius = if all_atom {
-                    radii::all_atom_radius(&atom.element)
-                } else {
-                    radii::radius(group.known_as, &atom.name, &atom.element, group.kind)
-                };
-            }
+            let Atom { name, element, .. } = &atoms[index];
+            radii[index] = match all_atom {
+                true => all_atom_radius(element),
+                false => radius(group.known_as, name, element, group.kind),
+            };
         }
     }
-    for (atom, radius) in atoms.iter_mut().zip(all_radii) {
+    for (atom, radius) in atoms.iter_mut().zip(radii) {
         atom.radius = radius;
     }
     Molecule {
         report,
         ..Molecule::new(atoms, format)
     }
-}
-
-fn count_chains(groups: &[Residue<'_>]) -> Vec<ChainCount> {
-    let mut chains: Vec<ChainCount> = Vec::new();
-    let mut places: HashMap<&str, usize> = HashMap::new();
-    for group in groups {
-        let at = *places.entry(group.key.0).or_insert_with(|| {
-            chains.push(ChainCount {
-                name: group.key.0.to_string(),
-                residues: 0,
-                atoms: 0,
-            });
-            chains.len() - 1
-        });
-        if let Some(chain) = chains.get_mut(at) {
-            chain.residues += 1;
-            chain.atoms += group.atoms.len();
-        }
-    }
-    chains
-}
-
-fn count_groups(groups: &[Residue<'_>]) -> Vec<GroupCount> {
-    let mut counts: BTreeMap<(GroupKind, &str), [usize; 2]> = BTreeMap::new();
-    for group in groups.iter().filter(|g| g.kind != GroupKind::AminoAcid) {
-        let [residues, atoms] = counts.entry((group.kind, group.key.3)).or_default();
-        *residues += 1;
-        *atoms += group.atoms.len();
-    }
-    let counts = counts.into_iter();
-    counts
-        .map(|((kind, name), [residues, atoms])| GroupCount {
-            name: name.to_owned(),
-            kind,
-            residues,
-            atoms,
-        })
-        .collect()
-}
-
-fn count_other_names(groups: &[Residue<'_>]) -> Vec<OtherName> {
-    let mut counts: BTreeMap<(&str, &str), usize> = BTreeMap::new();
-    for group in groups.iter().filter(|group| group.known_as != group.key.3) {
-        *counts.entry((group.key.3, group.known_as)).or_default() += 1;
-    }
-    let counts = counts.into_iter();
-    counts
-        .map(|((name, read_as), residues)| OtherName {
-            name: name.to_owned(),
-            read_as: read_as.to_owned(),
-            residues,
-        })
-        .collect()
 }

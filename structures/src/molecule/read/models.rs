@@ -4,14 +4,12 @@
 //! of a complex with a partner in each lie beside one another: two atoms that are not bonded keep a distance of some
 //! 3 Å. So the models of a file are parts where hardly any atom shares a cell of 2 Å with an atom of another model.
 
-use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
-
-use crate::molecule::model::report::JoinedModels;
-use crate::molecule::model::wording::count;
+use crate::molecule::model::{JoinedModels, count, residue_key, squared_distance};
+use crate::molecule::read::Record;
 use crate::molecule::read::assembly::copy_name;
-use crate::molecule::read::coincidence::Copies;
-use crate::molecule::read::parse::Parsed;
+use crate::neighbours::SpatialHash;
 use crate::neighbours::cell::{Cell, cell_of};
+use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// Edge of the cells, in Å. Within a protein there is an atom for every 16 Å³, so that half of these cells of 8 Å³ hold
 /// one.
@@ -78,60 +76,105 @@ pub(crate) const ALTERNATIVES_JOINED: &str = "the models of this file lie on one
 /// Makes one molecule of several models. A chain whose name an earlier model has is renamed as copies in an assembly
 /// are: the second of chain A is `A-2`. Where the models are parts, an atom within 0.5 Å of the same atom of an earlier
 /// model is left out.
-pub(crate) fn join(parsed: Vec<Parsed>, relation: Relation) -> (Vec<Parsed>, JoinedModels) {
+pub(crate) fn join(records: Vec<Record>, relation: Relation) -> (Vec<Record>, JoinedModels) {
     let mut of_chain: HashMap<&str, BTreeSet<usize>> = HashMap::new();
-    for record in &parsed {
-        let models = of_chain.entry(&record.raw.chain).or_default();
-        models.insert(record.raw.model);
+    for record in &records {
+        let models = of_chain.entry(&record.atom.chain).or_default();
+        models.insert(record.model);
     }
     let in_file: HashSet<&str> = of_chain.keys().copied().collect();
-    let names: HashMap<(usize, &str), String> = of_chain
-        .iter()
-        .flat_map(|(chain, models)| {
-            let in_file = &in_file;
-            let numbered = models.iter().zip(1..);
-            numbered.map(move |(model, copy)| ((*model, *chain), copy_name(chain, copy, in_file)))
-        })
-        .collect();
-    let mut seen: HashMap<_, Copies<usize>> = HashMap::new();
-    let mut repeats = Vec::with_capacity(parsed.len());
-    for record in &parsed {
-        let (raw, position) = (&record.raw, record.exact.position);
+    let numbered = of_chain.iter().flat_map(|(&chain, models)| {
+        let copies = models.iter().zip(1..);
+        copies.map(move |(&model, copy)| ((chain, model), copy))
+    });
+    let copies: HashMap<(&str, usize), usize> = numbered.collect();
+    let mut images: HashMap<_, Images<usize>> = HashMap::new();
+    let mut names: Vec<Option<String>> = Vec::with_capacity(records.len());
+    for record in &records {
+        let (atom, model) = (&record.atom, record.model);
         let key = (
-            raw.chain.as_str(),
-            raw.residue_number,
-            raw.insertion_code,
-            (raw.residue_name.as_str(), record.name.as_str()),
-            raw.alternate_location,
+            residue_key(atom),
+            atom.name.as_str(),
+            atom.alternate_location,
         );
-        let there = seen.entry(key).or_default();
-        let repeat = relation == Relation::Parts && there.has(position, |model| model != raw.model);
-        repeats.push(repeat);
-        if !repeat {
-            there.push(raw.model, position);
+        let there = images.entry(key).or_default();
+        if relation == Relation::Parts && there.has(atom.position, |other| other != model) {
+            names.push(None);
+            continue;
         }
+        there.push(model, atom.position);
+        let copy = copies[&(atom.chain.as_str(), model)];
+        names.push(Some(copy_name(&atom.chain, copy, &in_file)));
     }
-    let renamed: Vec<Option<String>> = parsed
-        .iter()
-        .map(|record| names.get(&(record.raw.model, record.raw.chain.as_str())))
-        .map(|name| name.cloned())
-        .collect();
-    let models: BTreeSet<usize> = parsed.iter().map(|record| record.raw.model).collect();
+    let models: BTreeSet<usize> = records.iter().map(|record| record.model).collect();
     let report = JoinedModels {
         models: models.len(),
-        on_axes: repeats.iter().filter(|repeat| **repeat).count(),
+        on_axes: names.iter().filter(|name| name.is_none()).count(),
     };
-    let kept = parsed.into_iter().zip(renamed).zip(repeats);
-    let joined = kept
-        .filter(|(_, repeat)| !repeat)
-        .map(|((mut record, name), _)| {
-            if let Some(name) = name {
-                record.raw.chain = name;
-            }
-            record
-        })
-        .collect();
+    let mut joined = Vec::with_capacity(records.len());
+    for (mut record, name) in records.into_iter().zip(names) {
+        if let Some(name) = name {
+            record.atom.chain = name;
+            joined.push(record);
+        }
+    }
     (joined, report)
+}
+
+/// Copies nearer than this, in Å, are one: it lies on an axis of symmetry.
+const ON_AXIS: f64 = 0.5;
+
+/// Copies up to which a new one is compared with each; more are looked up by their place.
+const FEW: usize = 64;
+
+/// Where the copies of one atom lie (Å), and what each belongs to.
+#[derive(Clone)]
+pub(crate) struct Images<T> {
+    first: Vec<(T, [f64; 3])>,
+    /// All of them, where they are many.
+    cells: Option<SpatialHash<(T, [f64; 3])>>,
+}
+
+impl<T> Default for Images<T> {
+    fn default() -> Self {
+        Self {
+            first: Vec::new(),
+            cells: None,
+        }
+    }
+}
+
+impl<T: Copy> Images<T> {
+    /// Whether there is no copy.
+    pub(crate) fn is_empty(&self) -> bool {
+        self.first.is_empty()
+    }
+
+    /// Whether a position lies on a copy, of those that count.
+    pub(crate) fn has(&self, position: [f64; 3], counts: impl Fn(T) -> bool) -> bool {
+        let lies_on = |(owner, place): &(T, [f64; 3])| {
+            counts(*owner) && squared_distance(*place, position) < ON_AXIS * ON_AXIS
+        };
+        match &self.cells {
+            None => self.first.iter().any(lies_on),
+            Some(cells) => cells.around(position).any(lies_on),
+        }
+    }
+
+    /// Adds a copy.
+    pub(crate) fn push(&mut self, owner: T, position: [f64; 3]) {
+        match &mut self.cells {
+            Some(cells) => cells.push(position, (owner, position)),
+            None => self.first.push((owner, position)),
+        }
+        if self.cells.is_none() && self.first.len() == FEW {
+            let mut cells = SpatialHash::new(ON_AXIS);
+            for &(owner, place) in &self.first {
+                cells.push(place, (owner, place));
+            }
+            self.cells = Some(cells);
+        }
+    }
 }
 
 #[cfg(test)]
@@ -166,5 +209,21 @@ mod tests {
         let near_far = block(3, 8, [61.0; 3]);
         assert_eq!(of(&[first, far, near_far]), Relation::Alternatives);
         assert_eq!(of(&[]), Relation::Single);
+    }
+
+    /// Each copy was compared with all before it: 100,000 operators of a file, or as many models, took minutes.
+    #[test]
+    fn many_copies_are_looked_up_by_their_place() {
+        let mut copies = Images::default();
+        for number in 0..200_000 {
+            let place = [0.6 * number as f64, -3.0, 0.0];
+            assert!(!copies.has(place, |_| true));
+            copies.push(number, place);
+        }
+        for number in [0, 63, 64, 199_999] {
+            let place = [0.6 * number as f64 + 0.1, -3.0, 0.2];
+            assert!(copies.has(place, |owner| owner == number));
+            assert!(!copies.has(place, |owner| owner > number + 1));
+        }
     }
 }

@@ -5,7 +5,11 @@
 use std::fmt;
 use std::str::FromStr;
 
+use serde::de::IntoDeserializer;
+use serde::de::value::{Error as ValueError, StrDeserializer};
 use serde::{Deserialize, Serialize};
+
+use crate::Error;
 
 /// Options on reading a structure file.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -72,16 +76,13 @@ impl ModelChoice {
 }
 
 impl FromStr for ModelChoice {
-    type Err = PolicyError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, PolicyError> {
+    fn from_str(text: &str) -> Result<Self, Error> {
         match (text, text.parse()) {
             ("all", _) => Ok(Self::All),
             (_, Ok(number)) if number > 0 => Ok(Self::Number(number)),
-            _ => Err(PolicyError {
-                text: text.to_owned(),
-                choices: "a whole number above zero and all",
-            }),
+            _ => Err(none_of("a whole number above zero and all", text)),
         }
     }
 }
@@ -105,9 +106,9 @@ impl From<ModelChoice> for WrittenModel {
 }
 
 impl TryFrom<WrittenModel> for ModelChoice {
-    type Error = PolicyError;
+    type Error = Error;
 
-    fn try_from(written: WrittenModel) -> Result<Self, PolicyError> {
+    fn try_from(written: WrittenModel) -> Result<Self, Error> {
         match written {
             WrittenModel::Number(number) => number.to_string().parse(),
             WrittenModel::Word(word) => word.parse(),
@@ -117,7 +118,7 @@ impl TryFrom<WrittenModel> for ModelChoice {
 
 /// Policy on waters.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(rename_all = "kebab-case")]
 pub enum Waters {
     /// They are dropped.
     #[default]
@@ -128,7 +129,7 @@ pub enum Waters {
 
 /// Policy on HETATM records other than water.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(rename_all = "kebab-case")]
 pub enum Hetatm {
     /// Known buffer and cryo additives are dropped (whatever their record), all else is kept.
     #[default]
@@ -142,7 +143,7 @@ pub enum Hetatm {
 
 /// Policy on hydrogens.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
+#[serde(rename_all = "kebab-case")]
 pub enum Hydrogens {
     /// They are dropped: united-atom radii stand for them.
     #[default]
@@ -162,72 +163,42 @@ pub enum AlternateLocation {
     Named(char),
 }
 
-/// A policy that is none.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("'{text}' is none of {choices}")]
-pub struct PolicyError {
-    /// What was given.
-    text: String,
-    /// What there is to choose from.
-    choices: &'static str,
+/// The error of a text that is none of the choices.
+fn none_of(choices: &str, text: &str) -> Error {
+    Error::input(format!("'{text}' is none of {choices}")).help(format!("give one of {choices}"))
 }
 
-/// Reads and writes a policy as one of a few words.
+/// Reads and writes policies as in records: one of a few words.
 macro_rules! words {
-    ($policy:ty, $choices:literal, $($value:path = $word:literal),+) => {
+    ($($policy:ty: $choices:literal),+) => {$(
         impl FromStr for $policy {
-            type Err = PolicyError;
+            type Err = Error;
 
-            fn from_str(text: &str) -> Result<Self, PolicyError> {
-                match text {
-                    $($word => Ok($value),)+
-                    _ => Err(PolicyError { text: text.to_owned(), choices: $choices }),
-                }
+            fn from_str(text: &str) -> Result<Self, Error> {
+                let word: StrDeserializer<'_, ValueError> = text.into_deserializer();
+                Self::deserialize(word).map_err(|_| none_of($choices, text))
             }
         }
 
         impl fmt::Display for $policy {
             fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-                f.write_str(match self {
-                    $($value => $word,)+
-                })
+                self.serialize(f)
             }
         }
-    };
+    )+};
 }
 
-words!(
-    Waters,
-    "drop and keep",
-    Waters::Drop = "drop",
-    Waters::Keep = "keep"
-);
-words!(
-    Hetatm,
-    "no-additives, keep and drop",
-    Hetatm::NoAdditives = "no-additives",
-    Hetatm::Keep = "keep",
-    Hetatm::Drop = "drop"
-);
-words!(
-    Hydrogens,
-    "drop and keep",
-    Hydrogens::Drop = "drop",
-    Hydrogens::Keep = "keep"
-);
+words!(Waters: "drop and keep", Hetatm: "no-additives, keep and drop", Hydrogens: "drop and keep");
 
 impl FromStr for AlternateLocation {
-    type Err = PolicyError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, PolicyError> {
+    fn from_str(text: &str) -> Result<Self, Error> {
         let mut characters = text.chars();
         match (text, characters.next(), characters.next()) {
             ("occupancy", ..) => Ok(Self::Occupancy),
             (_, Some(name), None) if name.is_ascii_graphic() => Ok(Self::Named(name)),
-            _ => Err(PolicyError {
-                text: text.to_owned(),
-                choices: "occupancy and a single character, such as A",
-            }),
+            _ => Err(none_of("occupancy and a single character, such as A", text)),
         }
     }
 }
@@ -241,26 +212,19 @@ impl fmt::Display for AlternateLocation {
     }
 }
 
-/// Policies go into records as they stand on the command line.
-macro_rules! as_text {
-    ($($policy:ty),+) => {$(
-        impl From<$policy> for String {
-            fn from(policy: $policy) -> Self {
-                policy.to_string()
-            }
-        }
-
-        impl TryFrom<String> for $policy {
-            type Error = PolicyError;
-
-            fn try_from(text: String) -> Result<Self, PolicyError> {
-                text.parse()
-            }
-        }
-    )+};
+impl From<AlternateLocation> for String {
+    fn from(location: AlternateLocation) -> Self {
+        location.to_string()
+    }
 }
 
-as_text!(Waters, Hetatm, Hydrogens, AlternateLocation);
+impl TryFrom<String> for AlternateLocation {
+    type Error = Error;
+
+    fn try_from(text: String) -> Result<Self, Error> {
+        text.parse()
+    }
+}
 
 #[cfg(test)]
 mod tests {

@@ -7,13 +7,14 @@
 //!   virtual and centroid atoms. What has an element in its column is an atom, but for the names of a standard
 //!   residue's own virtual atoms.
 
-use crate::molecule::chemistry::elements;
-use crate::molecule::chemistry::elements::{NameColumn, column_symbol};
-use crate::molecule::chemistry::residues::{amino_acid_type, is_amino_acid, is_water};
-use crate::molecule::chemistry::site_names::{is_site_name, mass_center};
-use crate::molecule::model::atom::squared_distance;
-use crate::molecule::read::parse::Parsed;
 use std::collections::HashMap;
+
+use crate::molecule::chemistry::{
+    NameColumn, amino_acid_type, column_symbol, is_amino_acid, is_site_name, is_water, mass_center,
+    resolve,
+};
+use crate::molecule::model::{Atom, ResidueKey, residue_key, squared_distance};
+use crate::molecule::read::Record;
 
 /// Markers: residue name and the names of its atoms, digits behind them aside.
 const MARKERS: [(&str, &[&str]); 12] = [
@@ -47,104 +48,81 @@ const MARKERS: [(&str, &[&str]); 12] = [
 /// Largest distance in Å of a Drude particle from its atom; a deuteron is twice as far.
 const DRUDE: f64 = 0.5;
 
-/// Atoms of one residue: chain, number, insertion code and name.
-type Key<'a> = (&'a str, i64, Option<char>, &'a str);
-
-fn key(record: &Parsed) -> Key<'_> {
-    let raw = &record.raw;
-    (
-        &raw.chain,
-        raw.residue_number,
-        raw.insertion_code,
-        &raw.residue_name,
-    )
-}
-
 /// Which records are pseudo-atoms, and under what name they are counted: `known` has the names under which the tables
 /// have each record's residue.
-pub(crate) fn find(parsed: &[Parsed], known: &[&str]) -> Vec<Option<String>> {
-    let markers = markers(parsed);
-    let all = parsed.iter().zip(known).zip(markers).enumerate();
-    all.map(|(index, ((record, known), marker))| {
-        if marker {
-            Some(record.raw.residue_name.clone())
-        } else if is_drude(parsed, index) {
+pub(crate) fn find(records: &[Record], known: &[&str]) -> Vec<Option<String>> {
+    let all = records.iter().zip(known).zip(markers(records)).enumerate();
+    all.map(|(index, ((Record { atom, .. }, known), is_marker))| {
+        if is_marker {
+            Some(atom.residue_name.clone())
+        } else if is_drude(records, index) {
             Some("Drude particle".to_owned())
         } else {
-            is_site(parsed, index, known).then(|| record.name.clone())
+            is_site(records, index, known).then(|| atom.name.clone())
         }
     })
     .collect()
 }
 
-/// The records of residues that are markers.
-fn markers(parsed: &[Parsed]) -> Vec<bool> {
-    let is_marker = |record: &Parsed| {
-        let of_residue = MARKERS
+/// Whether each record is of a residue that is a marker.
+fn markers(records: &[Record]) -> Vec<bool> {
+    let atoms = || records.iter().map(|record| &record.atom);
+    let mut whole: HashMap<ResidueKey<'_>, bool> = HashMap::new();
+    for atom in atoms() {
+        let marker = MARKERS
             .iter()
-            .find(|(residue, _)| *residue == record.raw.residue_name);
-        of_residue.map(|(_, atoms)| {
-            let name = record.name.to_ascii_uppercase();
-            atoms.contains(&name.trim_end_matches(|c: char| c.is_ascii_digit()))
-        })
-    };
-    let each: Vec<Option<bool>> = parsed.iter().map(is_marker).collect();
-    let mut whole: HashMap<Key<'_>, bool> = HashMap::new();
-    for (record, is_marker) in parsed.iter().zip(&each) {
-        if let Some(is_marker) = is_marker {
-            *whole.entry(key(record)).or_insert(true) &= is_marker;
+            .find(|(residue, _)| *residue == atom.residue_name);
+        if let Some((_, names)) = marker {
+            let name = atom.name.to_ascii_uppercase();
+            let is_named = names.contains(&name.trim_end_matches(|c: char| c.is_ascii_digit()));
+            *whole.entry(residue_key(atom)).or_insert(true) &= is_named;
         }
     }
-    let all = parsed.iter().zip(each);
-    all.map(|(record, one)| one.is_some() && whole.get(&key(record)) == Some(&true))
-        .collect()
+    let is_marker = |atom| whole.get(&residue_key(atom)) == Some(&true);
+    atoms().map(is_marker).collect()
 }
 
-/// The records of a record's residue that stand before and after it without another residue between.
-fn beside(parsed: &[Parsed], index: usize) -> impl Iterator<Item = &Parsed> {
-    let own = parsed.get(index).map(key);
-    let same = move |record: &&Parsed| Some(key(record)) == own;
-    let (before, after) = parsed.split_at(index);
+/// The atoms of a record's residue that stand before and after it without another residue between.
+fn beside(records: &[Record], index: usize) -> impl Iterator<Item = &Atom> {
+    let own = residue_key(&records[index].atom);
+    let is_same = move |atom: &&Atom| residue_key(atom) == own;
+    let (before, after) = records.split_at(index);
+    let [before, after] = [before, after].map(|records| records.iter().map(|record| &record.atom));
     before
-        .iter()
         .rev()
-        .take_while(same)
-        .chain(after.iter().take_while(same))
+        .take_while(is_same)
+        .chain(after.take_while(is_same))
 }
 
 /// Whether a record is the charged particle of CHARMM's Drude model, which is named after its atom (`DCA` beside `CA`).
-fn is_drude(parsed: &[Parsed], index: usize) -> bool {
-    let Some((record, atom)) = parsed.get(index).and_then(|record| {
-        let atom = record.name.strip_prefix('D')?;
-        (!atom.is_empty()).then_some((record, atom))
-    }) else {
-        return false;
-    };
-    beside(parsed, index).any(|other| {
-        other.name == atom
-            && squared_distance(other.exact.position, record.exact.position) < DRUDE * DRUDE
+fn is_drude(records: &[Record], index: usize) -> bool {
+    let Atom { name, position, .. } = &records[index].atom;
+    let atom = name.strip_prefix('D').filter(|atom| !atom.is_empty());
+    atom.is_some_and(|atom| {
+        let is_near = |other: &Atom| squared_distance(other.position, *position) < DRUDE * DRUDE;
+        beside(records, index).any(|other| other.name == atom && is_near(other))
     })
 }
 
 /// Whether a record is a site without mass in a residue that the tables have as `known`.
-fn is_site(parsed: &[Parsed], index: usize, known: &str) -> bool {
-    let Some(record) = parsed.get(index) else {
-        return false;
-    };
-    let (name, column) = (record.name.as_str(), record.raw.element.as_str());
+fn is_site(records: &[Record], index: usize, known: &str) -> bool {
+    let Atom {
+        name,
+        element: column,
+        ..
+    } = &records[index].atom;
     if is_water(known) {
         let name = name.trim_end_matches(|c: char| c.is_ascii_digit());
         return matches!(name, "M" | "MW" | "OM" | "EP" | "EPW" | "LP");
     }
     if is_amino_acid(known) {
-        let is_nothing =
-            || elements::resolve(known, name, column, NameColumn::Unknown, false).is_none();
+        let is_nothing = || resolve(known, name, column, NameColumn::Unknown, false).is_none();
         return amino_acid_type(known, name).is_none()
             && (is_site_name(name, column) || is_nothing());
     }
     let is_mass_centre = || {
         mass_center(name).is_some_and(|heavy| {
-            heavy.starts_with(['C', 'N']) && beside(parsed, index).any(|other| other.name == heavy)
+            heavy.starts_with(['C', 'N']) && beside(records, index).any(|other| other.name == heavy)
         })
     };
     // PyMOL's pseudoatoms under another residue's name.

@@ -1,287 +1,268 @@
-//! From parsed records to the atoms that are docked: chains requested, by default no hydrogens, no waters, no
-//! additives, one alternate location a residue, of predictions the residues that they are sure enough of.
+//! From the records of a file to the atoms that are docked: chains requested, by default no hydrogens, no waters, no
+//! additives, one alternate location per residue, and of predictions the residues that they are sure enough of.
 
-use std::collections::{HashMap, HashSet};
-use std::path::Path;
+use std::collections::{BTreeSet, HashMap, HashSet};
 
-use crate::molecule::chemistry::additives::is_additive;
-use crate::molecule::chemistry::elements;
-use crate::molecule::chemistry::elements::{NameColumn, Origin};
-use crate::molecule::chemistry::other_names::known_as;
-use crate::molecule::chemistry::residues::{is_amino_acid, is_water};
-use crate::molecule::model::atom::Atom;
-use crate::molecule::model::cut_ends::cut_ends;
-use crate::molecule::model::report::{DropKind, ReadReport};
-use crate::molecule::model::wording::show_chain;
+use crate::Error;
+use crate::molecule::chemistry::{
+    NameColumn, Origin, Resolved, is_additive, is_amino_acid, is_hydrogen, is_water, known_as,
+    resolve,
+};
+use crate::molecule::model::{
+    Atom, DropKind, Picked, ResidueKey, ResidueSelection, cut_ends, residue_key, show_chain,
+};
 use crate::molecule::read::alternate::choose;
-use crate::molecule::read::confidence::weigh;
-use crate::molecule::read::error::ReadError;
-use crate::molecule::read::parse::Parsed;
-use crate::molecule::read::policy::{Hetatm, Hydrogens, ReadOptions, Waters};
+use crate::molecule::read::confidence::{Provenance, weigh};
 use crate::molecule::read::pseudo_atoms;
-use crate::molecule::read::record_filter::provenance::Provenance;
-use crate::molecule::read::wanted::Wanted;
+use crate::molecule::read::{Drops, Hetatm, Hydrogens, ReadOptions, Record, Waters, bad_selection};
 
-/// Applies all selections and notes in the report what they dropped.
-///
-/// Radii are left at zero: they need to know whole residues. `dropped` hears of every atom that is left out, in file
-/// order but for alternate locations and residues of low confidence, which come last.
+/// Applies all selections, and notes what they drop. Radii are left at zero: they need whole residues.
 pub(crate) fn select(
-    file: &Path,
-    parsed: Vec<Parsed>,
+    records: Vec<Record>,
     chains: Option<&[String]>,
     options: &ReadOptions,
     provenance: Provenance,
-    report: &mut ReadReport,
-    dropped: &mut dyn FnMut(Atom, DropKind),
-) -> Result<Vec<Atom>, ReadError> {
-    let wanted = wanted(file, &parsed, chains, report)?;
-    let other_names = other_names(&parsed);
-    let (aligned, pseudo_atoms) = {
-        let names = parsed.iter().zip(&other_names);
-        let known: Vec<&str> = names
-            .map(|(record, other)| other.as_deref().unwrap_or(&record.raw.residue_name))
-            .collect();
-        (
-            keeps_alignment(&parsed, &known),
-            pseudo_atoms::find(&parsed, &known),
-        )
+    drops: &mut Drops,
+) -> Result<Vec<Atom>, Error> {
+    let chains = chains.map(|parts| RequestedChains::new(&records, parts, &drops.report.warnings));
+    let chains = chains.transpose()?;
+    let known = known_names(&records);
+    let aligned = keeps_alignment(&records, &known);
+    let pseudo_atoms = pseudo_atoms::find(&records, &known);
+    drops.report.membrane = membrane(&records, &pseudo_atoms);
+    let modified = match options.hetatm {
+        Hetatm::Drop => modified_residues(&records),
+        Hetatm::NoAdditives | Hetatm::Keep => HashSet::new(),
     };
-    report.membrane = membrane(&parsed, &pseudo_atoms);
-    let criteria = Criteria::new(&parsed, wanted, options);
-    let mut atoms = Vec::with_capacity(parsed.len());
+    let elements = records.iter().zip(&known).map(|(record, known)| {
+        let (name, column) = (&record.atom.name, &record.atom.element);
+        resolve(known, name, column, record.name_column, aligned)
+    });
+    let elements: Vec<Option<Resolved>> = elements.collect();
+    let unwanted = records
+        .iter()
+        .zip(&pseudo_atoms)
+        .map(|(record, pseudo_atom)| {
+            let is_elsewhere = chains
+                .as_ref()
+                .and_then(|chains| chains.leaves_out(&record.atom));
+            is_elsewhere
+                .or_else(|| unwanted(&record.atom, pseudo_atom.is_some(), options, &modified))
+        });
+    let unwanted: Vec<Option<DropKind>> = unwanted.collect();
+    let mut atoms = Vec::with_capacity(records.len());
     let mut left_out = Vec::new();
-    let facts = other_names.into_iter().zip(pseudo_atoms);
-    for (record, (other_name, pseudo_atom)) in parsed.into_iter().zip(facts) {
-        let raw = &record.raw;
-        let name = raw.residue_name.as_str();
-        let known = other_name.as_deref().unwrap_or(name);
-        let resolved = || {
-            let column = &raw.element;
-            elements::resolve(known, &record.name, column, raw.name_column, aligned)
-        };
-        if let Some((kind, of)) = criteria.unwanted(&record, pseudo_atom.as_deref()) {
-            report.drop_atoms(kind, of, 1);
-            let symbol = resolved().map_or("", |element| element.symbol);
-            let atom = atom(record, symbol);
-            if kind == DropKind::OtherResidue {
-                left_out.push(atom.clone());
+    let facts = elements.into_iter().zip(unwanted).zip(pseudo_atoms);
+    for (record, ((element, unwanted), pseudo_atom)) in records.into_iter().zip(facts) {
+        let mut atom = record.atom;
+        let symbol = element.as_ref().map_or("", |element| element.symbol);
+        symbol.clone_into(&mut atom.element);
+        if let Some(kind) = unwanted {
+            match pseudo_atom.filter(|_| kind == DropKind::PseudoAtom) {
+                Some(name) => drops.add_named(&atom, kind, &name),
+                None => drops.add(&atom, kind),
             }
-            dropped(atom, kind);
+            if kind == DropKind::OtherResidue {
+                left_out.push(atom);
+            }
             continue;
         }
-        let element = resolved().ok_or_else(|| ReadError::UnknownElement {
-            file: file.to_path_buf(),
-            line: raw.line,
-            atom: record.name.clone(),
-            residue: format!("{name} {}{}", show_chain(&raw.chain), raw.residue_number),
-        })?;
-        if options.hydrogens == Hydrogens::Drop && elements::is_hydrogen(element.symbol) {
-            report.drop_atoms(DropKind::Hydrogen, "", 1);
-            dropped(atom(record, element.symbol), DropKind::Hydrogen);
+        let element = element.ok_or_else(|| unknown_element(&atom))?;
+        if options.hydrogens == Hydrogens::Drop && is_hydrogen(element.symbol) {
+            drops.add(&atom, DropKind::Hydrogen);
             continue;
         }
         match element.origin {
             Origin::Column => {}
-            Origin::Derived => report.altered.elements_derived += 1,
-            Origin::Corrected => report.altered.elements_corrected += 1,
+            Origin::Derived => drops.report.altered.elements_derived += 1,
+            Origin::Corrected => drops.report.altered.elements_corrected += 1,
         }
-        atoms.push(atom(record, element.symbol));
+        atoms.push(atom);
     }
-    report.cut_ends = cut_ends(&atoms, &left_out);
-    let atoms = choose(atoms, options.altloc, report, dropped);
-    let atoms = weigh(
-        atoms,
-        provenance,
-        options.min_plddt,
-        options.trust_plddt,
-        report,
-        dropped,
-    );
+    drops.report.cut_ends = cut_ends(&atoms, &left_out);
+    let atoms = choose(atoms, options.altloc, drops);
+    let atoms = weigh(atoms, provenance, options, drops);
     if atoms.is_empty() {
-        return Err(ReadError::EmptySelection {
-            file: file.to_path_buf(),
-            dropped: report.atoms_dropped(),
-        });
+        let dropped = drops.report.atoms_dropped();
+        let message =
+            format!("no atom is left after what is not wanted is dropped ({dropped} atoms)");
+        return Err(Error::input(message).help(
+            "pick other chains, or keep what is dropped: --hetatm keep, --waters keep, --hydrogens keep, a lower \
+             --min-plddt",
+        ));
     }
     Ok(atoms)
 }
 
-/// Lowest and highest z of membrane planes: of marks (`DUM`) that all lie in two planes across the z axis.
-fn membrane(parsed: &[Parsed], pseudo_atoms: &[Option<String>]) -> Option<[f64; 2]> {
+fn unknown_element(atom: &Atom) -> Error {
+    let residue = format!(
+        "{} {}{}",
+        atom.residue_name,
+        show_chain(&atom.chain),
+        atom.residue_number
+    );
+    let message = format!(
+        "the element of atom {} of {residue} is not known",
+        atom.name
+    );
+    Error::input(message).on_line(atom.line as u64).help(
+        "write the element symbol in columns 77-78 (PDB) or in _atom_site.type_symbol (mmCIF), remove the atom, or \
+         leave its residue out with --drop-residue NAME",
+    )
+}
+
+/// The chains and residues that are requested of a file: of some chains all, of others some residues.
+struct RequestedChains(HashMap<String, Vec<Picked>>);
+
+impl RequestedChains {
+    /// Reads the parts of a selection among the chains of a file. `warnings` go with the error of a chain that is not
+    /// there: what was not read may hold it.
+    ///
+    /// # Errors
+    /// A part names nothing of the file.
+    fn new(records: &[Record], parts: &[String], warnings: &[String]) -> Result<Self, Error> {
+        let mut present: Vec<&str> = Vec::new();
+        let mut names: BTreeSet<&str> = BTreeSet::new();
+        for Record { atom, .. } in records {
+            if names.insert(&atom.chain) {
+                present.push(&atom.chain);
+            }
+        }
+        let text = parts.join(",");
+        let selection: ResidueSelection = text.parse().map_err(|_| bad_selection(&text))?;
+        let mut requested: HashMap<String, Vec<Picked>> = HashMap::new();
+        for picked in selection.read_among(&names) {
+            let atoms = records.iter().map(|record| &record.atom);
+            let of_chain: Vec<&Atom> = atoms.filter(|atom| atom.chain == picked.chain).collect();
+            if of_chain.is_empty() {
+                return Err(unknown_chain(&picked.written, &present, warnings));
+            }
+            let is_there = |atom: &&Atom| picked.holds(atom.residue_number, atom.insertion_code);
+            if !of_chain.iter().any(is_there) {
+                let numbers = || of_chain.iter().map(|atom| atom.residue_number);
+                let (first, last) = (numbers().min().unwrap_or(0), numbers().max().unwrap_or(0));
+                let (part, chain) = (&picked.written, show_chain(&picked.chain));
+                return Err(Error::input(format!(
+                    "there is no residue {part}; chain {chain} of the file has {first} to {last}"
+                ))
+                .help(
+                    "pick residues that the file has, by the author's numbers: FILE:A:1-120 or FILE:A:52A, with all \
+                     parts of a list after commas",
+                ));
+            }
+            requested
+                .entry(picked.chain.clone())
+                .or_default()
+                .push(picked);
+        }
+        Ok(Self(requested))
+    }
+
+    /// Why an atom is left out, if it was not requested.
+    fn leaves_out(&self, atom: &Atom) -> Option<DropKind> {
+        let Some(parts) = self.0.get(&atom.chain) else {
+            return Some(DropKind::Chain);
+        };
+        let holds = |part: &Picked| part.holds(atom.residue_number, atom.insertion_code);
+        (!parts.iter().any(holds)).then_some(DropKind::OtherResidue)
+    }
+}
+
+fn unknown_chain(chain: &str, present: &[&str], warnings: &[String]) -> Error {
+    let names: Vec<&str> = present.iter().map(|name| show_chain(name)).collect();
+    let present = match names.as_slice() {
+        [] => "none".to_owned(),
+        [one] => format!("only {one}"),
+        several => several.join(", "),
+    };
+    let warnings: String = warnings.iter().map(|text| format!("; {text}")).collect();
+    Error::input(format!("there is no chain '{chain}'; the file has {present}{warnings}")).help(
+        "pick one of the chains listed; names are the author's and case-sensitive, _ is the blank name; residues are \
+         picked as in FILE:A:1-120",
+    )
+}
+
+/// Why an atom is dropped whatever chain it is of, hydrogens aside. `modified` are modified residues, if only these of
+/// the HETATM records are kept.
+fn unwanted(
+    atom: &Atom,
+    is_pseudo_atom: bool,
+    options: &ReadOptions,
+    modified: &HashSet<ResidueKey<'_>>,
+) -> Option<DropKind> {
+    let name = &atom.residue_name;
+    let is_kept_by_name = options.keep.contains(name);
+    if options.drop_residue.contains(name) {
+        Some(DropKind::Residue)
+    } else if is_water(name) && options.waters == Waters::Drop && !is_kept_by_name {
+        Some(DropKind::Water)
+    } else if is_pseudo_atom {
+        Some(DropKind::PseudoAtom)
+    } else if is_kept_by_name || is_water(name) {
+        None
+    } else if options.hetatm != Hetatm::Keep && is_additive(name) {
+        Some(DropKind::Additive)
+    } else {
+        let is_dropped =
+            options.hetatm == Hetatm::Drop && atom.hetero && !modified.contains(&residue_key(atom));
+        is_dropped.then_some(DropKind::Hetatm)
+    }
+}
+
+/// Lowest and highest z of membrane planes: of marks (`DUM`) that all are in two planes across the z axis.
+fn membrane(records: &[Record], pseudo_atoms: &[Option<String>]) -> Option<[f64; 2]> {
     // OPM writes three decimals, and rounds the thickness to one.
     const FLAT: f64 = 0.1;
-    let marks = parsed
-        .iter()
-        .zip(pseudo_atoms)
-        .filter(|(_, pseudo_atom)| pseudo_atom.as_deref() == Some("DUM"));
-    let z: Vec<f64> = marks.map(|(record, _)| record.exact.position[2]).collect();
+    let all = records.iter().zip(pseudo_atoms);
+    let marks = all.filter(|(_, pseudo_atom)| pseudo_atom.as_deref() == Some("DUM"));
+    let z: Vec<f64> = marks.map(|(record, _)| record.atom.position[2]).collect();
     let low = z.iter().copied().reduce(f64::min)?;
     let high = z.iter().copied().reduce(f64::max)?;
     let is_flat = z.iter().all(|z| z - low <= FLAT || high - z <= FLAT);
     (is_flat && high - low > FLAT).then_some([low, high])
 }
 
-/// The chains and residues that are requested; `None` for all.
-fn wanted(
-    file: &Path,
-    parsed: &[Parsed],
-    chains: Option<&[String]>,
-    report: &ReadReport,
-) -> Result<Option<Wanted>, ReadError> {
-    let wanted = chains.map(|chains| Wanted::new(file, parsed, chains));
-    wanted.transpose().map_err(|mut error| {
-        // What was not read may hold the chain.
-        if let ReadError::UnknownChain { warnings, .. } = &mut error {
-            warnings.clone_from(&report.warnings);
-        }
-        error
-    })
-}
-
-/// What a record is kept or dropped by, hydrogens aside.
-struct Criteria<'a> {
-    wanted: Option<Wanted>,
-    options: &'a ReadOptions,
-    /// Modified residues, where only these of the HETATM records are kept.
-    modified: HashSet<ResidueKey>,
-}
-
-impl<'a> Criteria<'a> {
-    fn new(parsed: &[Parsed], wanted: Option<Wanted>, options: &'a ReadOptions) -> Self {
-        let modified = match options.hetatm {
-            Hetatm::Drop => modified_residues(parsed),
-            Hetatm::NoAdditives | Hetatm::Keep => HashSet::new(),
-        };
-        Self {
-            wanted,
-            options,
-            modified,
+/// Of each record the name under which the tables have its residue.
+fn known_names(records: &[Record]) -> Vec<&str> {
+    let mut known: Vec<&str> = Vec::with_capacity(records.len());
+    let mut others: HashMap<ResidueKey<'_>, Vec<usize>> = HashMap::new();
+    for (index, Record { atom, .. }) in records.iter().enumerate() {
+        known.push(&atom.residue_name);
+        if !(is_amino_acid(&atom.residue_name) || is_water(&atom.residue_name)) {
+            others.entry(residue_key(atom)).or_default().push(index);
         }
     }
-
-    /// Why a record is dropped, and the name by which the report counts it.
-    fn unwanted<'r>(
-        &self,
-        record: &'r Parsed,
-        pseudo_atom: Option<&'r str>,
-    ) -> Option<(DropKind, &'r str)> {
-        let options = self.options;
-        let raw = &record.raw;
-        let name = raw.residue_name.as_str();
-        let is_kept_by_name = options.keep.iter().any(|keep| keep == name);
-        let is_elsewhere = self
-            .wanted
-            .as_ref()
-            .and_then(|wanted| wanted.leaves_out(raw));
-        if let Some(kind) = is_elsewhere {
-            Some((kind, show_chain(&raw.chain)))
-        } else if options.drop_residue.iter().any(|unwanted| unwanted == name) {
-            Some((DropKind::Residue, name))
-        } else if is_water(name) && options.waters == Waters::Drop && !is_kept_by_name {
-            Some((DropKind::Water, name))
-        } else if let Some(of) = pseudo_atom {
-            Some((DropKind::PseudoAtom, of))
-        } else if is_kept_by_name || is_water(name) {
-            None
-        } else if options.hetatm != Hetatm::Keep && is_additive(name) {
-            Some((DropKind::Additive, name))
-        } else if options.hetatm == Hetatm::Drop
-            && record.hetero
-            && !self.modified.contains(&residue_key(record))
-        {
-            Some((DropKind::Hetatm, name))
-        } else {
-            None
+    for (key, members) in others {
+        let atoms = members.iter().map(|&index| &records[index].atom);
+        let names = atoms.map(|atom| (atom.name.as_str(), atom.element.as_str()));
+        let name = known_as(key.name, names);
+        for index in members {
+            known[index] = name;
         }
     }
-}
-
-/// The atom of a record, its radius left at zero.
-pub(crate) fn atom(record: Parsed, element: &str) -> Atom {
-    let raw = record.raw;
-    Atom {
-        name: record.name,
-        residue_name: raw.residue_name,
-        chain: raw.chain,
-        residue_number: raw.residue_number,
-        insertion_code: raw.insertion_code,
-        alternate_location: raw.alternate_location,
-        element: element.to_string(),
-        position: record.exact.position,
-        occupancy: record.exact.occupancy,
-        b_factor: record.exact.b_factor,
-        hetero: record.hetero,
-        radius: 0.0,
-        line: raw.line,
-    }
-}
-
-/// Of each record the name under which the tables have its residue, where that is not its own.
-fn other_names(parsed: &[Parsed]) -> Vec<Option<String>> {
-    let mut residues: HashMap<(&str, i64, Option<char>, &str), Vec<usize>> = HashMap::new();
-    for (index, record) in parsed.iter().enumerate() {
-        let raw = &record.raw;
-        let name = raw.residue_name.as_str();
-        if !(is_amino_acid(name) || is_water(name)) {
-            let number = (raw.residue_number, raw.insertion_code);
-            let key = (raw.chain.as_str(), number.0, number.1, name);
-            residues.entry(key).or_default().push(index);
-        }
-    }
-    let mut found = vec![None; parsed.len()];
-    for ((.., name), records) in residues {
-        let atoms = records.iter().filter_map(|&index| parsed.get(index));
-        let known = known_as(
-            name,
-            atoms.map(|record| (record.name.as_str(), record.raw.element.as_str())),
-        );
-        if known != name {
-            for index in records {
-                if let Some(place) = found.get_mut(index) {
-                    *place = Some(known.to_owned());
-                }
-            }
-        }
-    }
-    found
-}
-
-/// Key of a residue.
-type ResidueKey = (String, i64, Option<char>, String);
-
-fn residue_key(record: &Parsed) -> ResidueKey {
-    let raw = &record.raw;
-    (
-        raw.chain.clone(),
-        raw.residue_number,
-        record.raw.insertion_code,
-        raw.residue_name.clone(),
-    )
+    known
 }
 
 /// Residues in HETATM records that have an amino acid's N, CA and C.
-fn modified_residues(parsed: &[Parsed]) -> HashSet<ResidueKey> {
-    let mut found: HashMap<ResidueKey, [bool; 3]> = HashMap::new();
-    for record in parsed.iter().filter(|record| record.hetero) {
-        if let Some(place) = ["N", "CA", "C"]
-            .iter()
-            .position(|name| *name == record.name)
-            && let Some(seen) = found.entry(residue_key(record)).or_default().get_mut(place)
-        {
-            *seen = true;
+fn modified_residues(records: &[Record]) -> HashSet<ResidueKey<'_>> {
+    let mut found: HashMap<ResidueKey<'_>, [bool; 3]> = HashMap::new();
+    for atom in records
+        .iter()
+        .map(|record| &record.atom)
+        .filter(|atom| atom.hetero)
+    {
+        if let Some(place) = ["N", "CA", "C"].iter().position(|name| *name == atom.name) {
+            found.entry(residue_key(atom)).or_default()[place] = true;
         }
     }
-    let whole = found.into_iter().filter(|(_, seen)| *seen == [true; 3]);
-    whole.map(|(key, _)| key).collect()
+    found.retain(|_, seen| *seen == [true; 3]);
+    found.into_keys().collect()
 }
 
 /// Whether the file aligns atom names as the wwPDB does: alpha carbons of amino acids leave column 13 blank. `known`
 /// are the names under which the tables have the records' residues.
-fn keeps_alignment(parsed: &[Parsed], known: &[&str]) -> bool {
-    parsed
-        .iter()
-        .zip(known)
-        .filter(|(record, known)| record.name == "CA" && is_amino_acid(known))
-        .all(|(record, _)| record.raw.name_column == NameColumn::Blank)
+fn keeps_alignment(records: &[Record], known: &[&str]) -> bool {
+    let all = records.iter().zip(known);
+    all.filter(|(record, known)| record.atom.name == "CA" && is_amino_acid(known))
+        .all(|(record, _)| record.name_column == NameColumn::Blank)
 }

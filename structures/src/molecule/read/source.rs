@@ -1,4 +1,7 @@
-//! From a path to text: opening, unpacking, and telling PDB from mmCIF.
+//! From a path to text: opening, unpacking, and telling PDB from mmCIF and from files of other kinds.
+//!
+//! An archive may begin like a structure: a tar of PDB files has their records in it, and between them what no reader
+//! should see.
 
 use std::fs::File;
 use std::io::{ErrorKind, Read};
@@ -6,12 +9,9 @@ use std::path::Path;
 
 use flate2::bufread::GzDecoder;
 
-use crate::molecule::model::format::Format;
-use crate::molecule::read::error::ReadError;
-use crate::molecule::read::foreign::{Foreign, archive};
-use crate::molecule::read::lines::lines;
-use crate::molecule::read::record_filter::atom_line::is_atom;
-use crate::molecule::read::record_filter::displaced::{Displaced, displaced};
+use crate::Error;
+use crate::molecule::model::Format;
+use crate::molecule::read::pdb_columns::atom_line;
 
 /// The first two bytes of every gzip stream (RFC 1952, section 2.3.1).
 const GZIP_MAGIC: [u8; 2] = [0x1f, 0x8b];
@@ -28,72 +28,90 @@ pub(crate) struct Source {
     pub(crate) text: String,
     /// Whether the file was gzip-compressed.
     pub(crate) compressed: bool,
+    pub(crate) format: Format,
+}
+
+/// The lines of a text with 1-based numbers, whatever ends them: LF, CR LF, or the lone CR of old systems.
+pub(crate) fn lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let end = if text.contains('\n') { '\n' } else { '\r' };
+    let numbered = text.split(end).zip(1..);
+    numbered.map(|(line, number)| (number, line.strip_suffix('\r').unwrap_or(line)))
 }
 
 /// The bytes of a structure's file as it stands, packed or not. What is read once can be a pipe.
 ///
 /// # Errors
-/// [`ReadError::Missing`], [`ReadError::Directory`], [`ReadError::Unreadable`] and [`ReadError::TooLarge`].
-pub fn file_bytes(path: &Path) -> Result<Vec<u8>, ReadError> {
-    let file = || path.to_path_buf();
-    let unreadable = |source: std::io::Error| match source.kind() {
-        ErrorKind::NotFound => ReadError::Missing { file: file() },
-        _ => ReadError::Unreadable {
-            file: file(),
-            source,
-        },
-    };
-    if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
-        return Err(ReadError::Directory { file: file() });
+/// There is no such file, it is a directory, it cannot be read, or it is too large.
+pub fn file_bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    let unreadable = |error: std::io::Error| {
+        match error.kind() {
+        ErrorKind::NotFound if path.to_string_lossy().contains(',') => {
+            Error::input("there is no such file").help(
+                "give one file for each side, and further conformations with --receptor-also or --ligand-also; chains \
+                 are picked with FILE:H,L",
+            )
+        }
+        ErrorKind::NotFound => Error::input("there is no such file").help(
+            "check the path; chains are picked with FILE:H,L and residues with FILE:H:1-120",
+        ),
+        _ => Error::input(format!("the file cannot be read: {error}"))
+            .help("check the permissions of the file and that it is on a readable disk"),
     }
-    let mut bytes = Vec::new();
-    File::open(path)
-        .and_then(|opened| opened.take(LIMIT + 1).read_to_end(&mut bytes))
-        .map_err(unreadable)?;
-    within_limit(path, bytes)
+    };
+    let read = || {
+        if std::fs::metadata(path).map_err(unreadable)?.is_dir() {
+            return Err(Error::input("this is a directory, not a structure file")
+                .help("name one .pdb, .ent, .cif or .mmcif file, plain or .gz"));
+        }
+        let mut bytes = Vec::new();
+        let opened = File::open(path).map_err(unreadable)?;
+        opened
+            .take(LIMIT + 1)
+            .read_to_end(&mut bytes)
+            .map_err(unreadable)?;
+        within_limit(bytes)
+    };
+    read().map_err(|error| error.at(path))
 }
 
 /// Refuses what is too large.
-fn within_limit(path: &Path, bytes: Vec<u8>) -> Result<Vec<u8>, ReadError> {
+fn within_limit(bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     if bytes.len() as u64 > LIMIT {
-        return Err(ReadError::TooLarge {
-            file: path.to_path_buf(),
-            limit: LIMIT,
-        });
+        let message = format!("the file is larger than {LIMIT} bytes once unpacked");
+        let remedy = "cut the file down to the chains and the model to be docked";
+        return Err(Error::input(message).help(remedy));
     }
     Ok(bytes)
 }
 
-/// Unpacks the bytes of a file, by its magic bytes whatever the name; `path` is for errors.
-pub(crate) fn unpack(path: &Path, mut bytes: Vec<u8>) -> Result<Source, ReadError> {
+/// Unpacks the bytes of a file, by its magic bytes whatever the name, and detects the format. `path` is the file's name.
+pub(crate) fn unpack(path: &Path, mut bytes: Vec<u8>) -> Result<Source, Error> {
     let compressed = bytes.starts_with(&GZIP_MAGIC);
-    let refuse = |foreign: Option<Foreign>| match foreign {
-        Some(Foreign { what, remedy }) => Err(ReadError::Foreign {
-            file: path.to_path_buf(),
-            what,
-            remedy,
-        }),
-        None => Ok(()),
-    };
-    refuse(archive(&bytes))?;
+    refuse_archive(&bytes)?;
     if compressed {
         // Of an archive the first block is enough.
         let mut head = Vec::new();
         let first = GzDecoder::new(bytes.as_slice())
             .take(BLOCK)
             .read_to_end(&mut head);
-        refuse(first.ok().and_then(|_| archive(&head)))?;
-        let unpacked = gunzip(&bytes).map_err(|source| ReadError::Gzip {
-            file: path.to_path_buf(),
-            source,
+        first.map_or(Ok(()), |_| refuse_archive(&head))?;
+        let unpacked = gunzip(&bytes).map_err(|error| {
+            Error::input(format!("the gzip data cannot be unpacked: {error}"))
+                .help("fetch the file again, or unpack it with gunzip to see where it breaks")
         })?;
-        bytes = within_limit(path, unpacked)?;
+        bytes = within_limit(unpacked)?;
     }
     let text = match String::from_utf8(bytes) {
         Ok(text) => text,
         Err(error) => String::from_utf8_lossy(error.as_bytes()).into_owned(),
     };
-    Ok(Source { text, compressed })
+    let format = format_of(path, &text).ok_or_else(|| not_a_structure(path))?;
+    Ok(Source {
+        text,
+        compressed,
+        format,
+    })
 }
 
 /// Unpacks one gzip stream or several in a row (RFC 1952, section 2.2), up to a byte more than [`LIMIT`]. Zeros may
@@ -120,35 +138,102 @@ fn gunzip(bytes: &[u8]) -> std::io::Result<Vec<u8>> {
 /// The format by content, or by the file's name where the content leaves it open.
 ///
 /// The content decides first because names lie more often: `.pdb` files that hold mmCIF are common in pipelines.
-pub(crate) fn format_of(path: &Path, text: &str) -> Option<Format> {
-    by_content(text).or_else(|| by_name(path))
-}
-
-fn by_content(text: &str) -> Option<Format> {
-    for (_, line) in lines(text) {
-        if is_atom(line) || matches!(displaced(line), Some(Displaced::Moved(_))) {
-            return Some(Format::Pdb);
-        }
+fn format_of(path: &Path, text: &str) -> Option<Format> {
+    let by_line = |(_, line): (usize, &str)| {
         let starts = |word: &str| {
-            line.get(..word.len())
-                .is_some_and(|head| head.eq_ignore_ascii_case(word))
+            let head = line.get(..word.len());
+            head.is_some_and(|head| head.eq_ignore_ascii_case(word))
         };
-        if starts("data_") || starts("_atom_site.") {
-            return Some(Format::Mmcif);
+        if atom_line(line).is_some_and(|line| line.text().is_some()) {
+            Some(Format::Pdb)
+        } else {
+            (starts("data_") || starts("_atom_site.")).then_some(Format::Mmcif)
         }
-    }
-    None
-}
-
-fn by_name(path: &Path) -> Option<Format> {
-    let name = path.file_name()?.to_str()?.to_ascii_lowercase();
-    let name = name.strip_suffix(".gz").unwrap_or(&name);
-    match name.rsplit_once('.')?.1 {
+    };
+    let by_name = || match ending(path)?.as_str() {
         "pdb" | "ent" => Some(Format::Pdb),
         "cif" | "mmcif" => Some(Format::Mmcif),
         _ => None,
+    };
+    lines(text).find_map(by_line).or_else(by_name)
+}
+
+/// The ending of a file's name in small letters, without that of gzip.
+fn ending(path: &Path) -> Option<String> {
+    let name = path.file_name()?.to_str()?.to_ascii_lowercase();
+    let name = name.strip_suffix(".gz").unwrap_or(&name);
+    Some(name.rsplit_once('.')?.1.to_owned())
+}
+
+/// The error of a file of another kind.
+fn foreign(what: &str, remedy: &str) -> Error {
+    Error::input(format!("this is {what}, not a PDB or mmCIF file")).help(remedy)
+}
+
+/// The error of a file whose text shows no known format.
+pub(crate) fn not_a_structure(path: &Path) -> Error {
+    let ending = ending(path).unwrap_or_default();
+    match ENDINGS.iter().find(|(known, ..)| *known == ending) {
+        Some((_, what, remedy)) => foreign(what, remedy),
+        None => Error::input("this is not a structure: no PDB record and no mmCIF data block was found").help(
+            "give a PDB or mmCIF file, plain or gzip-compressed; BinaryCIF, XML and other compressions are not read",
+        ),
     }
 }
+
+/// Refuses bytes, packed or unpacked, that are an archive's or of another compression than gzip.
+fn refuse_archive(bytes: &[u8]) -> Result<(), Error> {
+    if bytes.get(USTAR..USTAR + 5) == Some(b"ustar") {
+        return Err(foreign("a tar archive", UNPACK));
+    }
+    let found = MAGIC.iter().find(|(magic, ..)| bytes.starts_with(magic));
+    found.map_or(Ok(()), |(_, what, remedy)| Err(foreign(what, remedy)))
+}
+
+/// Where a tar has its magic bytes (POSIX.1-1988, ustar).
+const USTAR: usize = 257;
+
+const UNPACK: &str =
+    "unpack it and give one of its structure files, .pdb or .cif, plain or gzip-compressed";
+const GUNZIP: &str = "unpack it, and give the structure file plain or gzip-compressed";
+const CONVERT: &str =
+    "give a PDB or mmCIF file: Open Babel converts it, as in `obabel FILE -O OUT.pdb`";
+const TOPOLOGY: &str = "give a PDB or mmCIF file: GROMACS writes one by `gmx editconf -f IN.gro -o OUT.pdb`, other programs alike";
+const TABLE: &str =
+    "give a PDB or mmCIF file: the archive has every entry in mmCIF, and gemmi and PyMOL convert";
+
+/// First bytes of archives and compressions.
+const MAGIC: [(&[u8], &str, &str); 7] = [
+    (b"PK\x03\x04", "a zip archive", UNPACK),
+    (b"7z\xbc\xaf\x27\x1c", "a 7z archive", UNPACK),
+    (b"Rar!\x1a\x07", "a rar archive", UNPACK),
+    (b"BZh", "compressed by bzip2", GUNZIP),
+    (b"\xfd7zXZ\x00", "compressed by xz", GUNZIP),
+    (b"\x28\xb5\x2f\xfd", "compressed by zstd", GUNZIP),
+    (b"\x1f\x9d", "compressed by compress", GUNZIP),
+];
+
+/// Names of other formats, by their endings.
+const ENDINGS: [(&str, &str, &str); 18] = [
+    ("sdf", "an SDF file of small molecules", CONVERT),
+    ("sd", "an SDF file of small molecules", CONVERT),
+    ("mol", "a MOL file of a small molecule", CONVERT),
+    ("mol2", "a MOL2 file", CONVERT),
+    ("xyz", "an XYZ file", CONVERT),
+    ("smi", "a SMILES file", CONVERT),
+    ("cml", "a CML file", CONVERT),
+    ("mae", "a Maestro file", CONVERT),
+    ("maegz", "a Maestro file", CONVERT),
+    ("gro", "a GROMACS file", TOPOLOGY),
+    ("crd", "a coordinate file of a force field", TOPOLOGY),
+    ("psf", "a topology of a force field", TOPOLOGY),
+    ("prmtop", "a topology of a force field", TOPOLOGY),
+    ("xtc", "a trajectory", TOPOLOGY),
+    ("dcd", "a trajectory", TOPOLOGY),
+    ("bcif", "a BinaryCIF file", TABLE),
+    ("mmtf", "an MMTF file", TABLE),
+    ("pdbml", "a PDBML file", TABLE),
+];
 
 #[cfg(test)]
 mod tests {
@@ -191,5 +276,33 @@ mod tests {
         assert_eq!(format("pdb1abc.ENT.gz", "HEADER\n"), Some(Format::Pdb));
         assert_eq!(format("x.mmcif", ""), Some(Format::Mmcif));
         assert_eq!(format("x.txt", "hello\n"), None);
+    }
+
+    #[test]
+    fn archives_are_known_by_their_first_bytes() {
+        let mut tar = vec![0; 512];
+        tar[USTAR..USTAR + 5].copy_from_slice(b"ustar");
+        let refusal = |bytes: &[u8]| refuse_archive(bytes).unwrap_err();
+        assert!(refusal(&tar).message().contains("a tar archive"));
+        assert!(
+            refusal(b"PK\x03\x04...")
+                .message()
+                .contains("a zip archive")
+        );
+        assert_eq!(refusal(b"BZh91").remedy(), Some(GUNZIP));
+        assert_eq!(refuse_archive(b"ATOM      1"), Ok(()));
+        assert_eq!(refuse_archive(b""), Ok(()));
+    }
+
+    #[test]
+    fn other_formats_are_known_by_their_names() {
+        for name in ["x.sdf", "x.MOL2", "a.b.xyz.gz"] {
+            let error = not_a_structure(Path::new(name));
+            assert_eq!(error.remedy(), Some(CONVERT), "{name}");
+        }
+        for name in ["x.pdb", "x", "x.txt", "sdf"] {
+            let error = not_a_structure(Path::new(name));
+            assert!(error.message().contains("not a structure"), "{name}");
+        }
     }
 }

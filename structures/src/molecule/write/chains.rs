@@ -5,10 +5,9 @@ use std::fmt;
 
 use serde::{Serialize, Serializer};
 
-use crate::molecule::model::format::Format;
-use crate::molecule::model::molecule::Molecule;
-use crate::molecule::model::wording::show_chain;
-use crate::molecule::write::error::WriteError;
+use crate::Error;
+use crate::molecule::model::{Format, Molecule, show_chain};
+use crate::molecule::write::does_not_fit;
 
 /// One of the molecules of a complex.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
@@ -81,13 +80,13 @@ impl ChainMap {
 
     /// Gives every chain of a complex a unique name of letters and digits. Scripts select chains by these names, so that
     /// nothing else of an input file may reach them.
-    pub(crate) fn of_complex(format: Format, molecules: &[&Molecule]) -> Result<Self, WriteError> {
+    pub(crate) fn of_complex(format: Format, molecules: &[&Molecule]) -> Result<Self, Error> {
         let is_word = |name: &str| name.bytes().all(|byte| byte.is_ascii_alphanumeric());
         Self::assign(format, molecules, is_word)
     }
 
     /// Gives every chain of one molecule a unique name that the format can hold.
-    pub(crate) fn of_molecule(format: Format, molecule: &Molecule) -> Result<Self, WriteError> {
+    pub(crate) fn of_molecule(format: Format, molecule: &Molecule) -> Result<Self, Error> {
         let is_graphic = |name: &str| name.bytes().all(|byte| byte.is_ascii_graphic());
         match format {
             Format::Pdb => Self::assign(format, &[molecule], is_graphic),
@@ -100,7 +99,7 @@ impl ChainMap {
         format: Format,
         molecules: &[&Molecule],
         may_stay: impl Fn(&str) -> bool,
-    ) -> Result<Self, WriteError> {
+    ) -> Result<Self, Error> {
         let mut chains: Vec<ChainName> = Vec::new();
         for (place, molecule) in molecules.iter().enumerate() {
             let partner = Partner::at(place);
@@ -127,12 +126,8 @@ impl ChainMap {
         }
         let mut fresh = fresh_names(format);
         for chain in chains.iter_mut().filter(|chain| chain.written.is_empty()) {
-            chain.written =
-                fresh
-                    .find(|name| !taken.contains(name))
-                    .ok_or_else(|| WriteError::DoesNotFit {
-                        what: "more than 62 chains".to_string(),
-                    })?;
+            let name = fresh.find(|name| !taken.contains(name));
+            chain.written = name.ok_or_else(|| does_not_fit("more than 62 chains"))?;
             taken.insert(chain.written.clone());
         }
         Ok(Self { chains })

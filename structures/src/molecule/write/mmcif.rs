@@ -1,10 +1,10 @@
 //! The mmCIF writer: one `_atom_site` table (PDBx/mmCIF dictionary 5).
 
 use std::borrow::Cow;
-use std::io::Write;
+use std::io::{self, Write};
 
-use crate::molecule::write::error::WriteError;
-use crate::molecule::write::row::{Row, plain, rounded};
+use crate::Error;
+use crate::molecule::write::{Row, plain, rounded};
 
 const COLUMNS: [&str; 20] = [
     "group_PDB",
@@ -29,19 +29,8 @@ const COLUMNS: [&str; 20] = [
     "pdbx_PDB_model_num",
 ];
 
-/// Writes rows and remarks.
-pub(crate) fn write<W: Write>(
-    writer: &mut W,
-    rows: &[Row<'_>],
-    remarks: &[String],
-) -> Result<(), WriteError> {
-    write_head(writer, remarks)?;
-    write_model(writer, rows, (1, 0))?;
-    write_end(writer)
-}
-
 /// Writes remarks and the names of the columns.
-pub(crate) fn write_head<W: Write>(writer: &mut W, remarks: &[String]) -> Result<(), WriteError> {
+pub(super) fn write_head<W: Write>(writer: &mut W, remarks: &[String]) -> io::Result<()> {
     writeln!(writer, "data_knotdock\n_entry.id knotdock")?;
     if !remarks.is_empty() {
         writeln!(
@@ -63,17 +52,17 @@ pub(crate) fn write_head<W: Write>(writer: &mut W, remarks: &[String]) -> Result
 }
 
 /// Writes the end of the table.
-pub(crate) fn write_end<W: Write>(writer: &mut W) -> Result<(), WriteError> {
-    writeln!(writer, "#")?;
-    Ok(())
+pub(super) fn write_end<W: Write>(writer: &mut W) -> io::Result<()> {
+    writeln!(writer, "#")
 }
 
-/// Writes the rows of a model with its number, after so many rows of others.
-pub(crate) fn write_model<W: Write>(
+/// Writes the rows of a model with its number, after that many rows of others.
+pub(super) fn write_model<W: Write>(
     writer: &mut W,
     rows: &[Row<'_>],
-    (number, before): (usize, usize),
-) -> Result<(), WriteError> {
+    number: usize,
+    before: usize,
+) -> io::Result<()> {
     for (index, row) in rows.iter().enumerate() {
         let atom = row.atom;
         let group = if atom.hetero { "HETATM" } else { "ATOM" };
@@ -98,31 +87,25 @@ pub(crate) fn write_model<W: Write>(
 }
 
 /// A text as a CIF value: bare where it can be, quoted where it must be, `.` where it is empty.
-fn value(text: &str) -> Result<Cow<'_, str>, WriteError> {
+fn value(text: &str) -> io::Result<Cow<'_, str>> {
     if text.is_empty() {
         return Ok(Cow::Borrowed("."));
     }
     let lower = text.to_ascii_lowercase();
-    let is_reserved = ["data_", "save_", "loop_", "stop_", "global_"]
-        .iter()
-        .any(|word| lower.starts_with(word));
-    let is_null = text == "." || text == "?";
+    let mut reserved = ["data_", "save_", "loop_", "stop_", "global_"].iter();
     let is_bare = text.bytes().all(|byte| byte.is_ascii_graphic())
-        && !text.starts_with(['_', '#', '$', '\'', '"', '[', ']', ';']);
-    if is_bare && !is_reserved && !is_null {
-        return Ok(Cow::Borrowed(text));
-    }
-    if !text.bytes().all(|byte| (32..127).contains(&byte)) {
-        return Err(WriteError::Unwritable {
-            text: text.to_string(),
-        });
-    }
+        && !text.starts_with(['_', '#', '$', '\'', '"', '[', ']', ';'])
+        && !reserved.any(|word| lower.starts_with(word))
+        && !matches!(text, "." | "?");
+    let is_writable = text.bytes().all(|byte| (32..127).contains(&byte));
     match (text.contains('\''), text.contains('"')) {
-        (false, _) => Ok(Cow::Owned(format!("'{text}'"))),
-        (true, false) => Ok(Cow::Owned(format!("\"{text}\""))),
-        (true, true) => Err(WriteError::Unwritable {
-            text: text.to_string(),
-        }),
+        _ if is_bare => Ok(Cow::Borrowed(text)),
+        (false, _) if is_writable => Ok(Cow::Owned(format!("'{text}'"))),
+        (true, false) if is_writable => Ok(Cow::Owned(format!("\"{text}\""))),
+        _ => {
+            let message = format!("'{text}' cannot be written as an mmCIF value");
+            Err(io::Error::other(Error::input(message)))
+        }
     }
 }
 

@@ -1,55 +1,50 @@
 //! The PDB writer: wwPDB format 3.3, "Coordinate Section", columns 1 to 80.
 
-use std::io::Write;
+use std::io::{self, Write};
 
-use crate::molecule::write::error::WriteError;
-use crate::molecule::write::row::{Row, name, rounded};
+use crate::Error;
+use crate::molecule::write::{Row, does_not_fit, plain, rounded};
 
 /// Number of the free remarks: not one that the wwPDB reserves.
 const REMARK: &str = "REMARK  99 ";
 
 /// Whether the fixed columns can hold all of it.
-pub(crate) fn check(rows: &[Row<'_>]) -> Result<(), WriteError> {
+pub(super) fn check(rows: &[Row<'_>]) -> Result<(), Error> {
     if rows.len() > 99_999 {
-        return Err(WriteError::DoesNotFit {
-            what: format!("{} atoms, more than 99,999", rows.len()),
-        });
+        return Err(does_not_fit(&format!(
+            "{} atoms, more than 99,999",
+            rows.len()
+        )));
     }
+    let is_ascii = |text: &str| text.bytes().all(|byte| (32..127).contains(&byte));
+    let is_text = |text: &str, columns: usize| text.len() <= columns && is_ascii(text);
     for row in rows {
         let atom = row.atom;
-        let is_ascii = |text: &str| text.bytes().all(|byte| (32..127).contains(&byte));
-        let faults = [
-            (atom.name.len() > 4 || !is_ascii(&atom.name), "its name"),
-            (
-                atom.residue_name.len() > 3 || !is_ascii(&atom.residue_name),
-                "its residue's name",
-            ),
-            (
-                row.chain.len() > 1 || !is_ascii(row.chain),
-                "its chain's name",
-            ),
-            (
-                !(-999..=9999).contains(&atom.residue_number),
-                "its residue's number",
-            ),
-            (
-                atom.insertion_code
-                    .is_some_and(|code| !code.is_ascii_graphic()),
-                "its insertion code",
-            ),
-            (atom.element.len() > 2, "its element"),
-            (
-                !atom.position.iter().all(|&x| fits(x, 8, 1000.0)),
-                "its coordinates",
-            ),
-            (!fits(atom.occupancy, 6, 100.0), "its occupancy"),
-            (!fits(atom.b_factor, 6, 100.0), "its temperature factor"),
-        ];
-        if let Some((_, what)) = faults.iter().find(|(is_fault, _)| *is_fault) {
-            return Err(WriteError::DoesNotFit {
-                what: format!("{what} (atom {})", name(row)),
-            });
-        }
+        let fault = if !is_text(&atom.name, 4) {
+            "its name"
+        } else if !is_text(&atom.residue_name, 3) {
+            "its residue's name"
+        } else if !is_text(row.chain, 1) {
+            "its chain's name"
+        } else if !(-999..=9999).contains(&atom.residue_number) {
+            "its residue's number"
+        } else if atom
+            .insertion_code
+            .is_some_and(|code| !code.is_ascii_graphic())
+        {
+            "its insertion code"
+        } else if atom.element.len() > 2 {
+            "its element"
+        } else if !atom.position.iter().all(|&x| fits(x, 8, 1000.0)) {
+            "its coordinates"
+        } else if !fits(atom.occupancy, 6, 100.0) {
+            "its occupancy"
+        } else if !fits(atom.b_factor, 6, 100.0) {
+            "its temperature factor"
+        } else {
+            continue;
+        };
+        return Err(does_not_fit(&format!("{fault} (atom {})", row.name())));
     }
     Ok(())
 }
@@ -64,49 +59,32 @@ fn fits(value: f64, width: i32, per_unit: f64) -> bool {
     lowest < value && value < highest
 }
 
-/// Writes rows that [`check`] has passed.
-pub(crate) fn write<W: Write>(
-    writer: &mut W,
-    rows: &[Row<'_>],
-    remarks: &[String],
-) -> Result<(), WriteError> {
-    write_remarks(writer, remarks)?;
-    write_atoms(writer, rows)?;
-    write_end(writer)
-}
-
 /// Writes remarks, which come before everything else.
-pub(crate) fn write_remarks<W: Write>(
-    writer: &mut W,
-    remarks: &[String],
-) -> Result<(), WriteError> {
-    for remark in remarks {
-        for line in wrapped(remark) {
-            writeln!(writer, "{:<80}", format!("{REMARK}{line}"))?;
-        }
+pub(super) fn write_head<W: Write>(writer: &mut W, remarks: &[String]) -> io::Result<()> {
+    for line in remarks.iter().flat_map(|remark| wrapped(remark)) {
+        writeln!(writer, "{:<80}", format!("{REMARK}{line}"))?;
     }
     Ok(())
 }
 
 /// Writes rows that [`check`] has passed as a model.
-pub(crate) fn write_model<W: Write>(
+pub(super) fn write_model<W: Write>(
     writer: &mut W,
     rows: &[Row<'_>],
     number: usize,
-) -> Result<(), WriteError> {
+) -> io::Result<()> {
     writeln!(writer, "{:<80}", format!("MODEL     {number:>4}"))?;
     write_atoms(writer, rows)?;
-    writeln!(writer, "{:<80}", "ENDMDL")?;
-    Ok(())
+    writeln!(writer, "{:<80}", "ENDMDL")
 }
 
 /// Writes the last line.
-pub(crate) fn write_end<W: Write>(writer: &mut W) -> Result<(), WriteError> {
-    writeln!(writer, "{:<80}", "END")?;
-    Ok(())
+pub(super) fn write_end<W: Write>(writer: &mut W) -> io::Result<()> {
+    writeln!(writer, "{:<80}", "END")
 }
 
-fn write_atoms<W: Write>(writer: &mut W, rows: &[Row<'_>]) -> Result<(), WriteError> {
+/// Writes rows that [`check`] has passed.
+pub(super) fn write_atoms<W: Write>(writer: &mut W, rows: &[Row<'_>]) -> io::Result<()> {
     // TER takes a serial number of its own, unless that would be the 100,000th.
     let ends = rows.iter().filter(|row| row.ends_chain).count();
     let numbers_ends = rows.len() + ends <= 99_999;
@@ -130,15 +108,14 @@ fn write_atoms<W: Write>(writer: &mut W, rows: &[Row<'_>]) -> Result<(), WriteEr
             rounded(atom.b_factor, 100.0),
             atom.element.to_ascii_uppercase(),
         )?;
-        if row.ends_chain && numbers_ends {
-            serial += 1;
-            writeln!(
-                writer,
-                "{:<80}",
+        if row.ends_chain {
+            let end = if numbers_ends {
+                serial += 1;
                 format!("TER   {serial:>5}      {residue}")
-            )?;
-        } else if row.ends_chain {
-            writeln!(writer, "{:<80}", "TER")?;
+            } else {
+                "TER".to_owned()
+            };
+            writeln!(writer, "{end:<80}")?;
         }
     }
     Ok(())
@@ -160,7 +137,7 @@ fn name_columns(name: &str, element: &str) -> String {
 /// A remark as lines that fit beside its number, broken between words where there are any, in printable ASCII.
 fn wrapped(text: &str) -> Vec<String> {
     let width = 80 - REMARK.len();
-    let plain = crate::molecule::write::row::plain(text);
+    let plain = plain(text);
     let mut lines = vec![String::new()];
     for word in plain.split_ascii_whitespace() {
         let mut rest = word;

@@ -1,5 +1,5 @@
 use super::*;
-use crate::molecule::model::format::Format;
+use crate::molecule::model::Format;
 use crate::molecule::{InputSpec, ReadOptions, read};
 use std::f64::consts::TAU;
 use std::path::Path;
@@ -166,4 +166,24 @@ fn hydrogens_go_with_their_atoms() {
         assert!((distance(after[hydrogen], after[carrier]) - 1.0).abs() < 1e-9);
         assert_eq!(after[hydrogen] == before[hydrogen], name == "HA");
     }
+}
+
+#[test]
+fn a_turn_adds_to_the_dihedral_angle() {
+    let [a, b, c] = [[1.0, 0.3, -0.2], [0.0; 3], [0.1, -0.2, 1.5]];
+    let d = [1.0, 0.1, 2.0];
+    let before = dihedral([a, b, c, d]);
+    for angle in [0.0, 0.4, -1.3, 2.0] {
+        let after = turned(d, b, c, angle);
+        let difference = dihedral([a, b, c, after]) - before - angle;
+        let turns = (difference / std::f64::consts::TAU).round();
+        assert!((difference - turns * std::f64::consts::TAU).abs() < 1e-12);
+    }
+}
+
+/// Looking down +z from b to c, a at +x and d at +y is a quarter turn clockwise.
+#[test]
+fn clockwise_is_positive() {
+    let places = [[1.0, 0.0, 0.0], [0.0; 3], [0.0, 0.0, 1.0], [0.0, 1.0, 1.0]];
+    assert!((dihedral(places) - std::f64::consts::FRAC_PI_2).abs() < 1e-15);
 }

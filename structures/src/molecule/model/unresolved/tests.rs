@@ -1,10 +1,7 @@
 //! Tests of unresolved residues and their conformers.
 
 use super::*;
-use crate::molecule::model::atom::squared_distance;
-use crate::molecule::model::format::Format;
-use crate::molecule::model::groups::residue_runs;
-use crate::molecule::model::unresolved::loop_sampler::{FIRST, NEXT, ROOM, ROOM_BESIDE, TURN};
+use crate::molecule::model::{Format, residue_runs};
 use crate::test_support::{capped, example, without};
 
 fn trypsin() -> Molecule {
@@ -26,7 +23,7 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
 fn without_a_loop() -> (Molecule, Vec<[f64; 3]>) {
     let whole = trypsin();
     let runs = residue_runs(&whole.atoms);
-    let first = runs.iter().position(|run| run.key.1 == 145).unwrap();
+    let first = runs.iter().position(|run| run.key.number == 145).unwrap();
     let (molecule, taken) = without(&whole, first..first + 7);
     let alphas = taken.iter().filter(|atom| atom.name == "CA");
     (molecule, alphas.map(|atom| atom.position).collect())

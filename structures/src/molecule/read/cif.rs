@@ -1,6 +1,6 @@
 //! CIF 1.1 tokens with their lines (Hall, Allen and Brown 1991; IUCr, CIF 1.1 syntax).
 
-use crate::molecule::read::lines::lines;
+use crate::molecule::read::source::lines;
 
 /// One token of a CIF text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

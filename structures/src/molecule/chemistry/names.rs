@@ -1,5 +1,6 @@
-//! Amino acids under other names than the tables have: D-amino acids, names of force fields, names for the termini.
+//! Names of atoms and residues: those of force fields and old files as the wwPDB has them today.
 //!
+//! Amino acids come under other names than the tables have: D-amino acids, names of force fields, names for the termini.
 //! A residue is what its atoms make it:
 //!
 //! - A name of the tables (`ALA`, `HIE`, `CYX`, ...) keeps its meaning, and so does that of a modified residue whose
@@ -14,73 +15,108 @@
 //! Hydrogens and sites without mass do not count. D- and L-amino acids have the same radii, charges and contact types
 //! here.
 
-use crate::molecule::chemistry::atom_names::links_nucleotides;
-use crate::molecule::chemistry::charge_table::is_modified;
-use crate::molecule::chemistry::residues::{
-    amino_acid_type, is_amino_acid, is_water, side_chains, standard_atom_name,
+use std::borrow::Cow;
+
+use crate::molecule::chemistry::{
+    amino_acid_type, base, column_symbol, is_amino_acid, is_modified, is_water, parent,
+    side_chains, standard_atom_name,
 };
-use crate::molecule::chemistry::site_names::is_site_name;
+use crate::molecule::model::Atom;
+
+/// The plain name of an atom: `'` where files from before the remediation of 2007 have `*` in a sugar, and `OP1` for
+/// their `O1P`.
+pub fn plain_atom_name(atom_name: &str) -> Cow<'_, str> {
+    match atom_name {
+        "O1P" => Cow::Borrowed("OP1"),
+        "O2P" => Cow::Borrowed("OP2"),
+        "O3P" => Cow::Borrowed("OP3"),
+        starred if starred.contains('*') => Cow::Owned(starred.replace('*', "'")),
+        plain => Cow::Borrowed(plain),
+    }
+}
+
+/// Whether an atom of this name shows that a residue of a nucleotide's name is one: it links a sugar to its neighbour.
+/// Ruthenium (`RU`), indium iodide (`IN`) and a thyroid hormone (`T3`) are named like nucleotides.
+pub(crate) fn links_nucleotides(atom_name: &str) -> bool {
+    matches!(plain_atom_name(atom_name).as_ref(), "P" | "O3'" | "O5'")
+}
+/// The atom after which GROMACS names the two masses that stand for a group: `MCB1` and `MCB2` for the methyl of `CB`.
+pub(crate) fn mass_center(name: &str) -> Option<&str> {
+    name.strip_prefix('M')?.strip_suffix(['1', '2'])
+}
+
+/// Whether sites without mass have such a name, and no atom of an amino acid does.
+///
+/// These are lone pairs and extra points (`LPOA`, `EP1`), mass centres (`MN1`, `MW1` of tryptophan), virtual and
+/// centroid atoms and orbitals of Rosetta (`NV`, `V1`, `CEN`, `ORB1`), and pseudo-atoms of NMR (`QB`).
+pub(crate) fn is_site_name(name: &str, column: &str) -> bool {
+    if matches!(name, "CEN" | "NV") {
+        return true;
+    }
+    let is_centre = || mass_center(name).is_some_and(|heavy| heavy.starts_with(['C', 'N', 'W']));
+    column_symbol(column).is_none()
+        && (["LP", "EP", "ORB", "V", "Q"]
+            .iter()
+            .any(|start| name.starts_with(start))
+            || is_centre())
+}
+
+/// The plain name of a residue: of a protonation state or a disulphide's half the amino acid (`CYX` is `CYS`), of a
+/// nucleotide its base as one letter (`DA`, `ADE` and `RA3` are `A`). Of all others the name itself.
+pub fn plain_residue_name(residue_name: &str) -> &str {
+    base(residue_name).unwrap_or_else(|| parent(residue_name))
+}
+
+/// The name under which the tables have a residue: that of a standard amino acid or of a state of one, else its own.
+///
+/// A standard amino acid under another name is recognised by its atoms or its name (`DAL` is `ALA`, `NHIE` is `HIE`).
+pub fn standard_residue_name<'a>(
+    residue_name: &'a str,
+    atoms: impl IntoIterator<Item = &'a Atom>,
+) -> &'a str {
+    let atoms = atoms.into_iter();
+    known_as(
+        residue_name,
+        atoms.map(|atom| (atom.name.as_str(), atom.element.as_str())),
+    )
+}
 
 /// Amino acids and their states by other names.
 ///
 /// D-amino acids: wwPDB Chemical Component Dictionary. GROMOS and its OPLS names in GROMACS: `LYSH` is the charged
 /// lysine, `HISA` and `HISB` carry their proton on ND1 and NE2, `CYS2` is half a disulphide. Others: CHARMM (`HSC`),
 /// Maestro (`CYT`, `TYO`), TINKER (`TYD`, `LYD`), Rosetta (`CYD`, half a disulphide), CYANA (`LYS+`, `ASP-`), and
-/// AMBER at constant pH (`AS4`, `GL4`).
-const OTHER_NAMES: [(&str, &str); 53] = [
-    ("DAL", "ALA"),
-    ("DAR", "ARG"),
-    ("DSG", "ASN"),
-    ("DAS", "ASP"),
-    ("DSP", "ASP"),
-    ("DCY", "CYS"),
-    ("DGN", "GLN"),
-    ("DGL", "GLU"),
-    ("DHI", "HIS"),
-    ("DIL", "ILE"),
-    ("DLE", "LEU"),
-    ("DLY", "LYS"),
-    ("MED", "MET"),
-    ("DPN", "PHE"),
-    ("DPR", "PRO"),
-    ("DSN", "SER"),
-    ("DTH", "THR"),
-    ("DTR", "TRP"),
-    ("DTY", "TYR"),
-    ("DVA", "VAL"),
-    ("ARGH", "ARG"),
-    ("ARG+", "ARG"),
-    ("ARGN", "ARN"),
-    ("ASPH", "ASH"),
-    ("AS4", "ASP"),
-    ("ASP-", "ASP"),
-    ("CYS1", "CYS"),
-    ("CYSH", "CYS"),
-    ("CYS2", "CYX"),
-    ("CYSS", "CYX"),
-    ("CYD", "CYX"),
-    ("CYS-", "CYM"),
-    ("CYT", "CYM"),
-    ("GLUH", "GLH"),
-    ("GL4", "GLU"),
-    ("GLU-", "GLU"),
-    ("HIS1", "HID"),
-    ("HISA", "HID"),
-    ("HISD", "HID"),
-    ("HISB", "HIE"),
-    ("HISE", "HIE"),
-    ("HISH", "HIP"),
-    ("HIS+", "HIP"),
-    ("HIH", "HIP"),
-    ("HSC", "HIP"),
-    ("LYSH", "LYS"),
-    ("LYS+", "LYS"),
-    ("LYD", "LYN"),
-    ("LYSN", "LYN"),
-    ("TYD", "TYR-"),
-    ("TYM", "TYR-"),
-    ("TYO", "TYR-"),
-    ("TYRU", "TYR-"),
+/// AMBER at constant pH (`AS4`, `GL4`). Each standard name is followed by the others.
+const OTHER_NAMES: [(&str, &str); 29] = [
+    ("ALA", "DAL"),
+    ("ARG", "DAR ARGH ARG+"),
+    ("ASN", "DSG"),
+    ("ASP", "DAS DSP AS4 ASP-"),
+    ("CYS", "DCY CYS1 CYSH"),
+    ("GLN", "DGN"),
+    ("GLU", "DGL GL4 GLU-"),
+    ("HIS", "DHI"),
+    ("ILE", "DIL"),
+    ("LEU", "DLE"),
+    ("LYS", "DLY LYSH LYS+"),
+    ("MET", "MED"),
+    ("PHE", "DPN"),
+    ("PRO", "DPR"),
+    ("SER", "DSN"),
+    ("THR", "DTH"),
+    ("TRP", "DTR"),
+    ("TYR", "DTY"),
+    ("VAL", "DVA"),
+    ("ARN", "ARGN"),
+    ("ASH", "ASPH"),
+    ("CYX", "CYS2 CYSS CYD"),
+    ("CYM", "CYS- CYT"),
+    ("GLH", "GLUH"),
+    ("HID", "HIS1 HISA HISD"),
+    ("HIE", "HISB HISE"),
+    ("HIP", "HISH HIS+ HIH HSC"),
+    ("LYN", "LYD LYSN"),
+    ("TYR-", "TYD TYM TYO TYRU"),
 ];
 
 /// Names that the wwPDB gives to other molecules whose heavy atoms are named like those of a standard amino acid.
@@ -133,11 +169,11 @@ pub(crate) fn known_as<'a, 'b>(
 /// acid.
 fn by_name(name: &str) -> Option<&str> {
     let own = |name| {
-        let known = OTHER_NAMES.iter().find(|(other, _)| *other == name);
-        match known {
-            Some(&(_, standard)) => Some(standard),
-            None => is_amino_acid(name).then_some(name),
-        }
+        let is_other = |others: &str| others.split(' ').any(|other| other == name);
+        let known = OTHER_NAMES.iter().find(|(_, others)| is_other(others));
+        known.map_or(is_amino_acid(name).then_some(name), |&(standard, _)| {
+            Some(standard)
+        })
     };
     own(name).or_else(|| {
         let rest = name.strip_prefix(['N', 'C', 'D'])?;
@@ -160,7 +196,7 @@ fn by_atoms(heavy: &[&str]) -> Option<&'static str> {
                 .iter()
                 .any(|name| standard_atom_name(residue, name) == atom)
         };
-        side_chain.iter().all(|(atom, _)| is_there(atom))
+        side_chain.iter().all(|atom| is_there(atom.name))
             && heavy
                 .iter()
                 .all(|name| amino_acid_type(residue, name).is_some())
@@ -186,7 +222,7 @@ mod tests {
     fn atoms(standard: &str) -> Vec<(&'static str, &'static str)> {
         let (_, side_chain) = side_chains().find(|(name, _)| *name == standard).unwrap();
         let backbone = ["N", "CA", "C", "O"].into_iter();
-        let names = backbone.chain(side_chain.iter().map(|(name, _)| *name));
+        let names = backbone.chain(side_chain.iter().map(|atom| atom.name));
         names.map(|name| (name, "")).collect()
     }
 
@@ -203,7 +239,7 @@ mod tests {
             whole.extend([("OXT", "O"), ("HA", ""), ("1HB", "H"), ("LPOA", "")]);
             assert_eq!(of("Q1", &whole), name);
         }
-        for (other, _) in OTHER_NAMES {
+        for other in OTHER_NAMES.iter().flat_map(|(_, others)| others.split(' ')) {
             assert!(!is_amino_acid(other) && !is_modified(other), "{other}");
         }
     }
@@ -250,5 +286,28 @@ mod tests {
         assert_eq!(of("CYT", &[("N1", "N"), ("C2", "C")]), "CYT");
         assert_eq!(of("TYM", &[("CA", "C"), ("P", "P")]), "TYM");
         assert_eq!(of("HIP", &atoms("HIS")), "HIP");
+    }
+
+    #[test]
+    fn names_of_force_fields_and_old_files_become_plain() {
+        for (name, plain) in [
+            ("LSN", "LYS"),
+            ("ARN", "ARG"),
+            ("ASPP", "ASP"),
+            ("HIM", "HIS"),
+            ("CYZ", "CYS"),
+            ("DA5", "A"),
+            ("RA3", "A"),
+            ("RU", "U"),
+            ("URI", "U"),
+            ("THY", "T"),
+            ("ALA", "ALA"),
+            ("HEM", "HEM"),
+        ] {
+            assert_eq!(plain_residue_name(name), plain);
+        }
+        for (name, plain) in [("O1P", "OP1"), ("C5*", "C5'"), ("O5'", "O5'"), ("CA", "CA")] {
+            assert_eq!(plain_atom_name(name), plain);
+        }
     }
 }
