@@ -18,8 +18,7 @@ use crate::predictions::PredictionError;
 use crate::report::{ListError, ViewerError};
 use crate::restraints::RestraintFileError;
 use crate::threads::ThreadsError;
-use knotdock_structures::ball_file::BallFileError;
-use knotdock_structures::mesh::MeshError;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::ReadError;
 
 use crate::cli::messages::failure::Failure;
@@ -131,15 +130,21 @@ impl From<ReadError> for Failure {
     }
 }
 
-impl From<MeshError> for Failure {
-    fn from(error: MeshError) -> Self {
-        unreadable(&error, error.file(), error.line(), error.remedy())
-    }
-}
-
-impl From<BallFileError> for Failure {
-    fn from(error: BallFileError) -> Self {
-        unreadable(&error, Some(&error.path), error.line, error.remedy())
+impl From<Error> for Failure {
+    fn from(error: Error) -> Self {
+        let failure = match (error.exit_code(), error.may_pass()) {
+            (2, _) => Self::input(&error),
+            (_, true) => Self::other(&error),
+            (_, false) => Self::of_program(&error),
+        };
+        let mut failure = failure.on_line(error.line());
+        if let Some(file) = error.file() {
+            failure = failure.at(file);
+        }
+        match error.remedy() {
+            Some(remedy) => failure.remedy(remedy),
+            None => failure,
+        }
     }
 }
 

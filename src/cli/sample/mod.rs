@@ -138,7 +138,7 @@ impl Sample {
         let reading = Step::since("reading the mesh", start);
         console.say(format!("Mesh: {report}"));
         self.warn(report.warnings(), &console)?;
-        let solid = Solid::new(&mesh).map_err(|error| Failure::input(error).at(&self.mesh))?;
+        let solid = Solid::new(&mesh).map_err(|error| error.at(&self.mesh))?;
         let mut sampling = sample(&solid, self.grid.per_axis, method).map_err(|error| {
             Failure::input(error).at(&self.mesh).remedy(
                 "check that the mesh is closed and one solid, or sample it on a finer --grid",

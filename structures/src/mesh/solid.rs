@@ -1,10 +1,14 @@
 //! The solid that a mesh bounds: depth, inside and nearest surface point, in a frame where lengths are about one.
 
-use crate::mesh::distance::Surface;
-use crate::mesh::error::MeshErrorKind;
+use parry3d_f64::math::Vector;
+use parry3d_f64::query::point::PointQuery;
+use parry3d_f64::shape::TriMesh;
+
+use crate::error::Error;
+use crate::mesh::repair::weld::degenerate;
 use crate::mesh::triangle_mesh::Mesh;
 use crate::mesh::triangle_tree::TriangleTree;
-use crate::mesh::vector::{along, scale, subtract};
+use crate::mesh::vector::{along, distance, scale, subtract};
 use crate::mesh::{slivers, winding};
 
 /// Where a solid's own coordinates y stand in the file's: x = origin + unit y.
@@ -58,8 +62,8 @@ impl Solid {
     /// The solid of a mesh.
     ///
     /// # Errors
-    /// [`MeshErrorKind::Degenerate`] when no triangle has an area, which [`super::read`] has refused already.
-    pub fn new(mesh: &Mesh) -> Result<Self, MeshErrorKind> {
+    /// When no triangle has an area, which [`super::read`] has refused already.
+    pub fn new(mesh: &Mesh) -> Result<Self, Error> {
         let frame = Frame::of(mesh);
         let mesh = Mesh {
             positions: mesh.positions.iter().map(|&p| frame.inward(p)).collect(),
@@ -136,5 +140,63 @@ impl Solid {
     /// The nearest point of the surface.
     pub fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
         self.surface.nearest(point)
+    }
+}
+
+/// The triangles of a mesh in parry's tree of bounding boxes, to measure distances to.
+///
+/// parry's own inside test (`TriMeshFlags::ORIENTED`, pseudo-normals of the nearest feature) is not used: it is wrong
+/// on open meshes and also on closed ones that intersect themselves, which no cheap check finds. See
+/// [`super::winding`].
+struct Surface {
+    triangles: TriMesh,
+}
+
+impl Surface {
+    /// Triangles without area are left out: they lie within the edges of their neighbours, and projecting to one
+    /// divides zero by zero.
+    fn new(mesh: &Mesh) -> Result<Self, Error> {
+        let positions = mesh
+            .positions
+            .iter()
+            .map(|&p| Vector::from_array(p))
+            .collect();
+        let triangles: Vec<[u32; 3]> = mesh
+            .triangles
+            .iter()
+            .copied()
+            .filter(|&triangle| !mesh.is_sliver(triangle))
+            .collect();
+        let count = triangles.len();
+        // The builder refuses nothing but an empty list.
+        let triangles = TriMesh::new(positions, triangles).map_err(|_| degenerate(count))?;
+        Ok(Self { triangles })
+    }
+
+    /// The nearest point of the surface.
+    fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
+        self.triangles
+            .project_local_point(Vector::from_array(point), false)
+            .point
+            .to_array()
+    }
+
+    /// The distance to the surface, given that it is no larger than `bound`, which spares most of the search.
+    fn distance_within(&self, point: [f64; 3], bound: f64) -> f64 {
+        let at = Vector::from_array(point);
+        // The search takes what is nearer than the bound, and the bound may carry rounding of its own.
+        let bound = bound * (1.0 + 1e-9) + f64::MIN_POSITIVE;
+        match self
+            .triangles
+            .project_local_point_with_max_dist(at, false, bound)
+        {
+            Some(projection) => (projection.point - at).length(),
+            None => self.distance(point),
+        }
+    }
+
+    /// The distance to the surface.
+    fn distance(&self, point: [f64; 3]) -> f64 {
+        distance(self.nearest(point), point)
     }
 }

@@ -99,8 +99,13 @@ impl Mesh {
     pub fn area(&self) -> f64 {
         self.triangles
             .iter()
-            .map(|&triangle| norm(doubled_normal(self.corners(triangle))) / 2.0)
+            .map(|&triangle| self.area_of(triangle))
             .sum()
+    }
+
+    /// Area of one triangle, in the file's unit squared.
+    pub(crate) fn area_of(&self, triangle: [u32; 3]) -> f64 {
+        norm(doubled_normal(self.corners(triangle))) / 2.0
     }
 
     /// Whether a triangle has no area to speak of.
