@@ -27,7 +27,6 @@ mod solid;
 mod surface;
 mod triangle_mesh;
 mod triangle_tree;
-pub(crate) mod vector;
 pub(crate) mod winding;
 
 pub use self::read::{MeshFormat, file_bytes, from_triangles, parse, read, read_bytes};

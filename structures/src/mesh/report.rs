@@ -6,7 +6,7 @@ use serde::Serialize;
 
 use crate::mesh::read::MeshFormat;
 use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
-use crate::mesh::vector::{add, norm};
+use crate::vector::{add, norm};
 
 /// What was read, and what is amiss with it.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]

@@ -5,7 +5,7 @@ use rayon::prelude::*;
 use crate::mesh::solid::Solid;
 use crate::mesh::triangle_mesh::doubled_normal;
 use crate::mesh::triangle_tree::centroid;
-use crate::mesh::vector::{add, along, norm, scale, subtract};
+use crate::vector::{add, along, norm, scale, subtract};
 
 /// A point that stands for a small piece of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]

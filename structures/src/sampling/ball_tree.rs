@@ -1,8 +1,8 @@
 //! A tree of boxes over balls that answers how far a point is from their union.
 
 use crate::ball::Ball;
-use crate::mesh::vector::{distance, dot};
 use crate::neighbours::box_tree::{BoxNode, LEAF, box_tree};
+use crate::vector::{distance, dot};
 
 /// A tree over balls of boxes in four dimensions, of their centres and radii.
 #[derive(Debug)]

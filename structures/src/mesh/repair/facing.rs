@@ -8,7 +8,6 @@
 //! - where the surfaces about it leave the space empty faces outward, too: an island in a cavity;
 //! - where they fill it is the wall of a cavity if it faces inward. If it faces outward, it bounds nothing: the
 //!   solid is the union of both.
-
 //!
 //! A surface is within another if its bounding box is and all points that are looked at are: its outermost vertices
 //! and the middles of some of its triangles. A point on the other surface itself says nothing, so that bodies and
@@ -24,10 +23,10 @@ use crate::mesh::repair::edges::Sets;
 use crate::mesh::report::MeshReport;
 use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
 use crate::mesh::triangle_tree::{TriangleTree, centroid};
-use crate::mesh::vector::{add, cross, dot, norm, scale, subtract};
 use crate::mesh::winding::encloses;
 use crate::neighbours::box_tree::{LEAF, box_tree};
 use crate::neighbours::cell::{Cell, around, cell_of};
+use crate::vector::{add, cross, dot, norm, scale, subtract};
 
 /// Largest distance, about, between the borders of two pieces of one surface, as a share of the mesh's longest side.
 const SEAM: f64 = 1e-4;
@@ -143,10 +142,11 @@ impl Surface {
     }
 }
 
-/// Turns surfaces that face inward, unless they are walls of cavities. `at_border` says of each triangle whether an
-/// edge of it is open or unbalanced. Counts what it finds in the report; its volume falls by what nested surfaces count
-/// beyond once. Returns whether each triangle is to be dropped: of surfaces that are there again, and of those
-/// without a thickness outside the solid.
+/// Turns surfaces that face inward, unless they are walls of cavities, and counts them in the report.
+///
+/// `at_border` holds for each triangle whether an edge of it is open or unbalanced. The report's volume falls by the
+/// volume that nested surfaces count beyond once. Returns whether each triangle is to be dropped: those of surfaces
+/// that are there again, and those of surfaces without thickness outside the solid.
 ///
 /// # Errors
 /// Too many surfaces within one another.

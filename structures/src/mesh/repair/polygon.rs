@@ -10,8 +10,8 @@
 
 use std::collections::VecDeque;
 
-use crate::mesh::vector::{cross, dot, subtract};
 use crate::neighbours::box_tree::{BoxNode, LEAF, box_tree};
+use crate::vector::{cross, dot, subtract};
 
 /// Corners up to which every other corner is gone through for each; of more, a tree finds those that are in the way.
 const FEW: usize = 64;
@@ -360,7 +360,7 @@ impl CornerTree {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::vector::norm;
+    use crate::vector::norm;
     use std::f64::consts::TAU;
 
     /// A polygon about the origin in a tilted plane: corner i at `radius(i)`.

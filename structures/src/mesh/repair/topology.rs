@@ -13,7 +13,7 @@ use crate::mesh::repair::edges::{
 use crate::mesh::repair::facing::{Part, turn_outward};
 use crate::mesh::report::MeshReport;
 use crate::mesh::triangle_mesh::Mesh;
-use crate::mesh::vector::{norm, subtract};
+use crate::vector::{norm, subtract};
 
 /// Turns triangles to agree with their neighbours and parts to face outward, drops what bounds nothing, and counts
 /// what is amiss.

@@ -15,6 +15,7 @@ use crate::mesh::repair::{polygon, rounding};
 use crate::mesh::report::MeshReport;
 use crate::mesh::triangle_mesh::Mesh;
 use crate::neighbours::SpatialHash;
+use crate::vector::bounds;
 
 /// Largest distance of vertices that count as one, as a share of the longest edge of the bounding box. Files repeat a
 /// vertex with the same digits, so this needs to take up no more than the rounding of one conversion of units.
@@ -37,15 +38,8 @@ pub fn weld(
     report: &mut MeshReport,
 ) -> Result<Mesh, Error> {
     let count = faces.triangle_count();
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for &corner in faces.corners() {
-        let position = positions[corner as usize];
-        for axis in 0..3 {
-            low[axis] = low[axis].min(position[axis]);
-            high[axis] = high[axis].max(position[axis]);
-        }
-    }
+    let corners = faces.corners().iter();
+    let (low, high) = bounds(corners.map(|&corner| positions[corner as usize]));
     let extent = (0..3)
         .map(|axis| high[axis] - low[axis])
         .fold(0.0, f64::max);
@@ -140,9 +134,7 @@ fn join_seams(positions: &[[f64; 3]], faces: &Faces, reach: f64) -> Option<Vec<u
             .zip(&is_open)
             .filter_map(|(vertex, &is_open)| is_open.then_some(vertex))
     };
-    let low = open().fold([f64::INFINITY; 3], |low, vertex| {
-        std::array::from_fn(|axis| low[axis].min(positions[vertex as usize][axis]))
-    });
+    let (low, _) = bounds(open().map(|vertex| positions[vertex as usize]));
     // Cells are twice the reach, so that mostly one is looked at.
     let mut cells = SpatialHash::with_origin(low, 2.0 * reach, 0);
     let mut names: Vec<u32> = (0..positions.len() as u32).collect();
@@ -197,7 +189,7 @@ impl Places {
     /// The vertex that stands for a position: the earliest within reach, else a new one.
     fn name(&mut self, position: [f64; 3]) -> u32 {
         let within = |other: &&u32| {
-            crate::mesh::vector::distance(self.kept[**other as usize], position) <= self.reach
+            crate::vector::distance(self.kept[**other as usize], position) <= self.reach
         };
         let earliest = self
             .cells
