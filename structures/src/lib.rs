@@ -39,6 +39,8 @@ pub mod sampling;
 pub mod sphere_tree;
 #[cfg(all(test, feature = "mesh"))]
 mod test_support;
+#[cfg_attr(not(feature = "mesh"), allow(dead_code))]
+mod vector;
 
 pub use ball::{Ball, LARGEST_LENGTH, SMALLEST_RADIUS};
 pub use conformers::Conformers;

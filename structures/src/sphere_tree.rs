@@ -7,7 +7,7 @@
 //! Building takes O(n^2) time as a rule and O(n) memory: half a second for 3,000 balls.
 
 use crate::ball::Ball;
-use crate::mesh::vector::{along, distance, subtract};
+use crate::vector::{along, distance, subtract};
 
 /// A node: a ball, and the two that it was made of unless it is a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]

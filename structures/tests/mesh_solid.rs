@@ -59,6 +59,36 @@ fn depth_in_and_about_a_ball() {
     }
 }
 
+/// The same distances as parry's, of a ball, of a needle and of triangles that cross.
+#[test]
+fn distances_are_those_of_another_library() {
+    use parry3d_f64::math::Vector;
+    use parry3d_f64::query::PointQuery;
+    use parry3d_f64::shape::TriMesh;
+
+    let crossed = sphere([0.0; 3], 1.0, 24).and(&sphere([0.8, 0.3, 0.0], 0.9, 20));
+    for surface in [
+        sphere([0.0; 3], 1.0, 40),
+        cuboid([0.0; 3], [1000.0, 1.0, 1.0]),
+        crossed,
+    ] {
+        let solid = surface.solid();
+        let mesh = solid.mesh();
+        let positions = mesh.positions().iter().map(|&p| Vector::from_array(p));
+        let other = TriMesh::new(positions.collect(), mesh.triangles().to_vec()).unwrap();
+        for point in scattered(2000, 0.7) {
+            let expected = other.distance_to_local_point(Vector::from_array(point), false);
+            let found = solid.distance(point);
+            assert!(
+                (found - expected).abs() < 1e-14,
+                "{point:?}: {found} {expected}"
+            );
+            let slack = solid.distance_within(point, 1.5 * expected);
+            assert_eq!(slack.to_bits(), found.to_bits());
+        }
+    }
+}
+
 #[test]
 fn volumes_and_areas_are_the_closed_forms() {
     let (mesh, report) = cuboid([1e6, 0.0, 0.0], [1e6 + 2.0, 3.0, 0.5]).mesh();

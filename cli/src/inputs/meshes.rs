@@ -43,7 +43,7 @@ impl MeshInput {
         }
         let bytes = mesh::file_bytes(&spec.path)?;
         let (mesh, report) = mesh::read_bytes(&spec.path, &bytes)?;
-        let solid = Solid::new(&mesh).map_err(|error| Error::input(error).at(&spec.path))?;
+        let solid = Solid::new(&mesh).map_err(|error| error.at(&spec.path))?;
         Ok(Self {
             record: InputRecord::new(spec, &bytes),
             mesh,

@@ -10,16 +10,13 @@
 //!
 //! Lengths are in the file's unit. Errors carry the line.
 
-mod document;
-mod error;
 mod spheres;
 mod table;
-
-pub use error::{BallFileError, BallFileErrorKind};
 
 use std::path::Path;
 
 use crate::ball::{Ball, LARGEST_LENGTH};
+use crate::error::Error;
 
 /// Endings of files of balls, and how each is read.
 const ENDINGS: [(&str, Format); 4] = [
@@ -64,34 +61,60 @@ fn format_of(path: &Path) -> Option<Format> {
 /// Reads the bytes of a file of balls; of one with several groups the one named.
 ///
 /// # Errors
-/// [`BallFileError`] on text that is no such file, a row or sphere that is no ball, a group that is not there, several
-/// groups of which none is named, or a file without balls.
-pub fn parse(path: &Path, bytes: &[u8], group: Option<&str>) -> Result<BallFile, BallFileError> {
-    let read = || {
-        let format = format_of(path).ok_or(BallFileErrorKind::Ending)?;
-        let text = std::str::from_utf8(bytes).map_err(|_| BallFileErrorKind::NotText)?;
-        let text = text.strip_prefix('\u{feff}').unwrap_or(text);
-        let file = match (format, group) {
-            (Format::Table, Some(_)) => return Err(BallFileErrorKind::NoGroups.into()),
-            (Format::Table, None) => table::read(text)?,
-            (Format::Spheres, group) => spheres::read(text, group)?,
-        };
-        if file.balls.is_empty() {
-            return Err(BallFileErrorKind::Empty.into());
+/// Text that is no such file, a row or sphere that is no ball, a group that is not there, several groups of which none
+/// is named, or a file without balls.
+pub fn parse(path: &Path, bytes: &[u8], group: Option<&str>) -> Result<BallFile, Error> {
+    read(path, bytes, group).map_err(|error| error.at(path))
+}
+
+fn read(path: &Path, bytes: &[u8], group: Option<&str>) -> Result<BallFile, Error> {
+    let format = format_of(path).ok_or_else(|| {
+        Error::input("the ending of the name is not that of a file of balls")
+            .help("name it .csv, .yml, .yaml or .json")
+    })?;
+    let text = std::str::from_utf8(bytes)
+        .map_err(|_| Error::input("the file is not text in UTF-8").help("save it as UTF-8 text"))?;
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
+    let file = match (format, group) {
+        (Format::Table, Some(_)) => {
+            return Err(Error::input("a table of balls has no links to pick")
+                .help("leave out the colon and what follows it"));
         }
-        Ok(file)
+        (Format::Table, None) => table::read(text)?,
+        (Format::Spheres, group) => spheres::read(text, group)?,
     };
-    read().map_err(|fault: error::Fault| BallFileError {
-        path: path.to_path_buf(),
-        line: fault.line,
-        kind: fault.kind,
-    })
+    if file.balls.is_empty() {
+        return Err(Error::input("there are no balls in the file")
+            .help("give a table with columns x,y,z,r, or spheres with 'center' and 'radius'"));
+    }
+    Ok(file)
 }
 
 /// A number of at most [`LARGEST_LENGTH`].
 fn number(text: &str) -> Option<f64> {
     let number = text.trim().parse::<f64>().ok();
     number.filter(|number| number.abs() <= LARGEST_LENGTH)
+}
+
+/// The number of a field, or its refusal.
+fn number_of(what: &str, text: &str, line: u64) -> Result<f64, Error> {
+    number(text).ok_or_else(|| {
+        let text: String = text.trim().chars().take(40).collect();
+        Error::input(format!(
+            "{what} is '{text}', not a number from -1e30 to 1e30"
+        ))
+        .on_line(line)
+        .help("correct the number")
+    })
+}
+
+/// The refusal of a radius that is zero, negative or too small to compute with.
+fn bad_radius(radius: f64, line: u64) -> Error {
+    Error::input(format!(
+        "the radius is {radius:?}; it must be 1e-30 or above"
+    ))
+    .on_line(line)
+    .help("correct the number, or leave the ball out")
 }
 
 #[cfg(test)]

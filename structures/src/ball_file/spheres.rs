@@ -3,11 +3,14 @@
 //! A sphere is a mapping with `radius` and `center` (cuRobo) or `origin` (foam). The innermost key above a list of
 //! spheres names their link, but for foam's `spheres`, which stands in a link of its own or in one of several levels of
 //! detail. Of levels the last, finest one is read.
+//!
+//! JSON is read as the YAML that it is.
 
-use super::document::{self, Node, Value};
-use super::error::{BallFileErrorKind, Fault};
-use super::{BallFile, number};
+use saphyr_parser::{Event, Parser};
+
+use super::{BallFile, bad_radius, number_of};
 use crate::ball::{Ball, SMALLEST_RADIUS};
+use crate::error::Error;
 
 /// Key under which foam lists the spheres of one decomposition.
 const FOAM_LIST: &str = "spheres";
@@ -19,26 +22,30 @@ struct Group {
     switched_off: usize,
 }
 
-pub(super) fn read(text: &str, wanted: Option<&str>) -> Result<BallFile, Fault> {
+pub(super) fn read(text: &str, wanted: Option<&str>) -> Result<BallFile, Error> {
     let mut groups: Vec<Group> = Vec::new();
-    for document in document::parse(text)? {
+    for document in documents(text)? {
         collect(&document, "", &mut groups)?;
     }
     groups.retain(|group| !group.balls.is_empty() || group.switched_off > 0);
     let names: Vec<String> = groups.iter().map(|group| group.name.clone()).collect();
-    let known = || names.join(", ");
+    let known = names.join(", ");
+    let refused =
+        |what| Error::input(what).help("name one of them after a colon, as in robot.yml:hand");
     let index = match wanted {
         Some(name) => names
             .iter()
             .position(|other| other == name)
             .ok_or_else(|| {
-                let name = name.to_owned();
-                BallFileErrorKind::Unknown {
-                    name,
-                    known: known(),
-                }
+                refused(format!(
+                    "there is no link '{name}' with spheres; there are {known}"
+                ))
             })?,
-        None if names.len() > 1 => return Err(BallFileErrorKind::Several(known()).into()),
+        None if names.len() > 1 => {
+            return Err(refused(format!(
+                "the file has the spheres of several links, each in its own frame: {known}"
+            )));
+        }
         None => 0,
     };
     if groups.is_empty() {
@@ -55,13 +62,13 @@ pub(super) fn read(text: &str, wanted: Option<&str>) -> Result<BallFile, Fault> 
 }
 
 /// Adds the spheres at and below a node to the groups.
-fn collect(node: &Node, name: &str, groups: &mut Vec<Group>) -> Result<(), Fault> {
+fn collect(node: &Node, name: &str, groups: &mut Vec<Group>) -> Result<(), Error> {
     match &node.value {
         Value::Scalar(_) => Ok(()),
         Value::Mapping(_) if node.get("radius").is_some() => {
             let (ball, line) = (sphere(node)?, node.line);
             if ball.radius > 0.0 && ball.radius < SMALLEST_RADIUS {
-                return Err(BallFileErrorKind::Radius(ball.radius).at(line));
+                return Err(bad_radius(ball.radius, line));
             }
             let at = groups.iter().position(|group| group.name == name);
             let at = at.unwrap_or_else(|| {
@@ -101,16 +108,16 @@ fn collect(node: &Node, name: &str, groups: &mut Vec<Group>) -> Result<(), Fault
     }
 }
 
-fn sphere(node: &Node) -> Result<Ball, Fault> {
+fn sphere(node: &Node) -> Result<Ball, Error> {
     let scalar = |node: &Node, what| match &node.value {
-        Value::Scalar(text) => {
-            number(text).ok_or_else(|| BallFileErrorKind::number(what, text).at(node.line))
-        }
-        Value::List(_) | Value::Mapping(_) => {
-            Err(BallFileErrorKind::number(what, "a list").at(node.line))
-        }
+        Value::Scalar(text) => number_of(what, text, node.line),
+        Value::List(_) | Value::Mapping(_) => number_of(what, "a list", node.line),
     };
-    let missing = || BallFileErrorKind::Center.at(node.line);
+    let missing = || {
+        Error::input("the sphere has a radius, but no 'center' or 'origin' of three numbers")
+            .on_line(node.line)
+            .help("add 'center: [x, y, z]', or remove the sphere")
+    };
     let radius = node.get("radius").ok_or_else(missing)?;
     let center = node.get("center").or_else(|| node.get("origin"));
     let Some(Value::List(parts)) = center.map(|center| &center.value) else {
@@ -123,4 +130,101 @@ fn sphere(node: &Node) -> Result<Ball, Fault> {
         center: [scalar(x, "x")?, scalar(y, "y")?, scalar(z, "z")?],
         radius: scalar(radius, "radius")?,
     })
+}
+
+/// Deepest nesting that is read; lists of spheres have about five levels.
+const DEEPEST: usize = 64;
+
+/// A node, and the line that it begins on.
+struct Node {
+    line: u64,
+    value: Value,
+}
+
+/// What a node is.
+enum Value {
+    Scalar(String),
+    List(Vec<Node>),
+    /// Keys that are no scalars are left out, with their values.
+    Mapping(Vec<(String, Node)>),
+}
+
+impl Node {
+    /// The value under a key of a mapping.
+    fn get(&self, key: &str) -> Option<&Node> {
+        match &self.value {
+            Value::Mapping(entries) => {
+                let entry = entries.iter().find(|(name, _)| name == key);
+                entry.map(|(_, node)| node)
+            }
+            Value::Scalar(_) | Value::List(_) => None,
+        }
+    }
+}
+
+/// The documents of a text.
+fn documents(text: &str) -> Result<Vec<Node>, Error> {
+    let mut open: Vec<(Node, Option<Node>)> = Vec::new();
+    let mut documents = Vec::new();
+    for event in Parser::new_from_str(text) {
+        let (event, span) = event.map_err(|error| {
+            Error::input(format!(
+                "the file is neither YAML nor JSON: {}",
+                error.info()
+            ))
+            .on_line(error.marker().line() as u64)
+            .help("correct the syntax at this line")
+        })?;
+        let line = span.start.line() as u64;
+        let value = match event {
+            Event::SequenceStart(..) => Value::List(Vec::new()),
+            Event::MappingStart(..) => Value::Mapping(Vec::new()),
+            Event::Scalar(text, ..) => {
+                let value = Value::Scalar(text.into_owned());
+                close(&mut open, &mut documents, Node { line, value });
+                continue;
+            }
+            // Lists of spheres have no anchors; what stands for something else holds no ball.
+            Event::Alias(_) => {
+                let value = Value::Scalar(String::new());
+                close(&mut open, &mut documents, Node { line, value });
+                continue;
+            }
+            Event::SequenceEnd | Event::MappingEnd => {
+                if let Some((node, _)) = open.pop() {
+                    close(&mut open, &mut documents, node);
+                }
+                continue;
+            }
+            _ => continue,
+        };
+        if open.len() == DEEPEST {
+            return Err(Error::input(format!(
+                "the document is nested more than {DEEPEST} levels deep"
+            ))
+            .on_line(line)
+            .help("keep to the lists of spheres"));
+        }
+        open.push((Node { line, value }, None));
+    }
+    Ok(documents)
+}
+
+/// Puts a finished node where it belongs: into the collection about it, as a key or under the key before it.
+fn close(open: &mut [(Node, Option<Node>)], documents: &mut Vec<Node>, node: Node) {
+    match open.last_mut() {
+        None => documents.push(node),
+        Some((about, key)) => match &mut about.value {
+            Value::List(items) => items.push(node),
+            Value::Mapping(entries) => match key.take() {
+                None => *key = Some(node),
+                Some(Node {
+                    value: Value::Scalar(name),
+                    ..
+                }) => entries.push((name, node)),
+                Some(_) => {}
+            },
+            Value::Scalar(_) => {}
+        },
+    }
 }

@@ -1,8 +1,8 @@
 //! Tables of balls: comma, semicolon or tab between fields, with or without a header.
 
-use super::error::{BallFileErrorKind, Fault};
-use super::{BallFile, number};
+use super::{BallFile, bad_radius, number, number_of};
 use crate::ball::{Ball, SMALLEST_RADIUS};
+use crate::error::Error;
 
 /// Names of the columns, in the order in which they stand without a header.
 const COLUMNS: [(&str, &str); 5] = [
@@ -19,7 +19,7 @@ struct Places {
     weight: Option<usize>,
 }
 
-pub(super) fn read(text: &str) -> Result<BallFile, Fault> {
+pub(super) fn read(text: &str) -> Result<BallFile, Error> {
     let first = text.lines().next().unwrap_or_default();
     let delimiter = [',', ';', '\t']
         .into_iter()
@@ -29,7 +29,7 @@ pub(super) fn read(text: &str) -> Result<BallFile, Fault> {
     let mut weights = Vec::new();
     let mut places: Option<(Places, usize)> = None;
     // Numbers need no quotes, but some programs write them: a line is a row.
-    for (line, text) in (1..).zip(text.lines()) {
+    for (line, text) in (1u64..).zip(text.lines()) {
         if text.trim().is_empty() || text.starts_with('#') {
             continue;
         }
@@ -40,11 +40,10 @@ pub(super) fn read(text: &str) -> Result<BallFile, Fault> {
             None => {
                 let is_header = record.iter().all(|field| number(field).is_none());
                 let found = if is_header {
-                    header(&record)
+                    header(&record, line)?
                 } else {
-                    unnamed(record.len())
+                    unnamed(record.len(), line)?
                 };
-                let found = found.map_err(|kind| kind.at(line))?;
                 let (placed, fields) = places.insert((found, record.len()));
                 if is_header {
                     continue;
@@ -53,10 +52,9 @@ pub(super) fn read(text: &str) -> Result<BallFile, Fault> {
             }
         };
         if record.len() != fields {
-            let (found, expected) = (record.len(), fields);
-            return Err(BallFileErrorKind::Fields { found, expected }.at(line));
+            return Err(wrong_fields(record.len(), fields, line));
         }
-        let (ball, weight) = row(&record, places).map_err(|kind| kind.at(line))?;
+        let (ball, weight) = row(&record, places, line)?;
         file.balls.push(ball);
         weights.extend(weight);
     }
@@ -64,7 +62,13 @@ pub(super) fn read(text: &str) -> Result<BallFile, Fault> {
     Ok(file)
 }
 
-fn header(record: &[&str]) -> Result<Places, BallFileErrorKind> {
+fn wrong_fields(found: usize, expected: usize, line: u64) -> Error {
+    Error::input(format!("the row has {found} fields, not {expected}"))
+        .on_line(line)
+        .help("give each row x,y,z,r and perhaps a weight")
+}
+
+fn header(record: &[&str], line: u64) -> Result<Places, Error> {
     let place = |(short, long): (&str, &str)| {
         let is_named =
             |field: &&str| field.eq_ignore_ascii_case(short) || field.eq_ignore_ascii_case(long);
@@ -72,7 +76,11 @@ fn header(record: &[&str]) -> Result<Places, BallFileErrorKind> {
     };
     let mut places = [0; 4];
     for (found, names) in places.iter_mut().zip(COLUMNS) {
-        *found = place(names).ok_or(BallFileErrorKind::Column(names.0))?;
+        *found = place(names).ok_or_else(|| {
+            Error::input(format!("the header has no column '{}'", names.0))
+                .on_line(line)
+                .help("name the columns x,y,z,r and perhaps weight, or leave the header out")
+        })?;
     }
     Ok(Places {
         place: places,
@@ -80,20 +88,20 @@ fn header(record: &[&str]) -> Result<Places, BallFileErrorKind> {
     })
 }
 
-fn unnamed(fields: usize) -> Result<Places, BallFileErrorKind> {
+fn unnamed(fields: usize, line: u64) -> Result<Places, Error> {
     match fields {
         4 | 5 => Ok(Places {
             place: [0, 1, 2, 3],
             weight: (fields == 5).then_some(4),
         }),
-        found => Err(BallFileErrorKind::Fields { found, expected: 4 }),
+        found => Err(wrong_fields(found, 4, line)),
     }
 }
 
-fn row(record: &[&str], places: &Places) -> Result<(Ball, Option<f64>), BallFileErrorKind> {
+fn row(record: &[&str], places: &Places, line: u64) -> Result<(Ball, Option<f64>), Error> {
     let field = |column: usize, place: usize| {
         let text = record.get(place).copied().unwrap_or_default();
-        number(text).ok_or_else(|| BallFileErrorKind::number(COLUMNS[column].0, text))
+        number_of(COLUMNS[column].0, text, line)
     };
     let mut numbers = [0.0; 4];
     for (column, value) in numbers.iter_mut().enumerate() {
@@ -101,11 +109,15 @@ fn row(record: &[&str], places: &Places) -> Result<(Ball, Option<f64>), BallFile
     }
     let [x, y, z, radius] = numbers;
     if radius < SMALLEST_RADIUS {
-        return Err(BallFileErrorKind::Radius(radius));
+        return Err(bad_radius(radius, line));
     }
     let weight = places.weight.map(|place| field(4, place)).transpose()?;
     if let Some(weight) = weight.filter(|&weight| weight < 0.0) {
-        return Err(BallFileErrorKind::Weight(weight));
+        return Err(
+            Error::input(format!("the weight is {weight}; it must not be negative"))
+                .on_line(line)
+                .help("correct the number, or leave the ball out"),
+        );
     }
     let center = [x, y, z];
     Ok((Ball { center, radius }, weight))

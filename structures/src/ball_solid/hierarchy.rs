@@ -4,6 +4,7 @@
 //! of its balls, and the largest of them. Building takes O(n log n) time and O(n) memory; a rotation changes nothing.
 
 use crate::ball::Ball;
+use crate::neighbours::box_tree::box_tree;
 
 /// Balls in a leaf at most.
 const LEAF: usize = 4;
@@ -39,9 +40,47 @@ impl BallHierarchy {
     /// Builds the tree. Balls in the same place keep their order.
     pub fn new(balls: &[Ball]) -> Self {
         let mut numbered: Vec<(usize, Ball)> = balls.iter().copied().enumerate().collect();
-        let mut nodes = Vec::new();
-        if !numbered.is_empty() {
-            build(&mut numbered, 0, &mut nodes);
+        let place = |(number, ball): &(usize, Ball)| (ball.center, *number);
+        let nodes = box_tree(&mut numbered, LEAF, place, |balls| {
+            // In the order of the input, whatever order the halving left.
+            let mut balls = balls.to_vec();
+            balls.sort_unstable_by_key(|(number, _)| *number);
+            bounding(&balls)
+        });
+        let mut nodes: Vec<Node> = nodes
+            .into_iter()
+            .map(|node| Node {
+                bound: node.known,
+                first: node.first as u32,
+                count: node.count as u32,
+                second: node.second as u32,
+                largest: node.first as u32,
+            })
+            .collect();
+        for at in (0..nodes.len()).rev() {
+            let Node {
+                first,
+                count,
+                second,
+                ..
+            } = nodes[at];
+            if second == 0 {
+                let own = first as usize..(first + count) as usize;
+                numbered[own].sort_unstable_by_key(|(number, _)| *number);
+            }
+            let radius = |place: u32| numbered[place as usize].1.radius;
+            let larger = |best, place| {
+                if radius(place) > radius(best) {
+                    place
+                } else {
+                    best
+                }
+            };
+            nodes[at].largest = if second == 0 {
+                (first + 1..first + count).fold(first, larger)
+            } else {
+                larger(nodes[at + 1].largest, nodes[second as usize].largest)
+            };
         }
         let (order, balls) = numbered
             .into_iter()
@@ -78,77 +117,6 @@ impl BallHierarchy {
     pub(super) fn members(&self, node: &Node) -> &[Ball] {
         &self.balls[node.first as usize..(node.first + node.count) as usize]
     }
-}
-
-fn build(balls: &mut [(usize, Ball)], first: usize, nodes: &mut Vec<Node>) {
-    let at = nodes.len();
-    nodes.push(Node {
-        bound: bounding(balls),
-        first: first as u32,
-        count: balls.len() as u32,
-        second: 0,
-        largest: (first + largest(balls)) as u32,
-    });
-    if balls.len() <= LEAF {
-        return;
-    }
-    let (low, high) = center_box(balls);
-    let side = |axis: usize| high[axis] - low[axis];
-    let longer = |best, axis| if side(axis) > side(best) { axis } else { best };
-    let axis = (1..3).fold(0, longer);
-    let middle = balls.len() / 2;
-    balls.select_nth_unstable_by(middle, |(one, a), (other, b)| {
-        let order = a.center[axis].total_cmp(&b.center[axis]);
-        order.then(one.cmp(other))
-    });
-    // What is picked is sorted by nothing within its halves; the order of the input makes it definite.
-    let (left, right) = balls.split_at_mut(middle);
-    left.sort_unstable_by_key(|(number, _)| *number);
-    right.sort_unstable_by_key(|(number, _)| *number);
-    build(left, first, nodes);
-    nodes[at].second = nodes.len() as u32;
-    build(right, first + middle, nodes);
-    // The median moved them.
-    let own = nodes[at];
-    let halves = [nodes[at + 1], nodes[own.second as usize]];
-    let radius = |half: &Node| {
-        let place = half.largest as usize - first;
-        let list = if place < middle { &*left } else { &*right };
-        list[if place < middle {
-            place
-        } else {
-            place - middle
-        }]
-        .1
-        .radius
-    };
-    let bigger = if radius(&halves[1]) > radius(&halves[0]) {
-        1
-    } else {
-        0
-    };
-    nodes[at].largest = halves[bigger].largest;
-}
-
-fn largest(balls: &[(usize, Ball)]) -> usize {
-    (1..balls.len()).fold(0, |best, at| {
-        if balls[at].1.radius > balls[best].1.radius {
-            at
-        } else {
-            best
-        }
-    })
-}
-
-fn center_box(balls: &[(usize, Ball)]) -> ([f64; 3], [f64; 3]) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (_, ball) in balls {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(ball.center[axis]);
-            high[axis] = high[axis].max(ball.center[axis]);
-        }
-    }
-    (low, high)
 }
 
 /// A small ball that holds all: from the middle of their box, the centre moves towards the ball that reaches out

@@ -38,7 +38,7 @@ pub use motion::Motion;
 
 use crate::ball::Ball;
 use crate::knots::{Knots, KnotsError};
-use crate::mesh::vector::{norm, subtract};
+use crate::vector::{norm, subtract};
 
 /// A solid between two sets of balls.
 #[derive(Clone, Debug)]

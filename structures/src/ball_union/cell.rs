@@ -10,6 +10,8 @@
 
 use std::f64::consts::FRAC_PI_2;
 
+use crate::vector::{cross, dot};
+
 /// A half-space n x <= offset, with n of length one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Plane {
@@ -315,16 +317,4 @@ impl Turn {
         };
         self.quarters * FRAC_PI_2 + rest
     }
-}
-
-fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }

@@ -16,7 +16,7 @@ mod lens;
 
 use std::f64::consts::PI;
 
-use super::neighbours::box_tree::{BoxNode, box_tree};
+use super::neighbours::box_tree::{BoxNode, LEAF, box_tree};
 use super::{Ball, Knots};
 use cell::{Cell, Plane};
 pub use lens::lens_volume;
@@ -331,7 +331,7 @@ impl Arrangement {
             let radii = members.iter().map(|(ball, _)| ball.radius);
             radii.fold(0.0, f64::max)
         };
-        let nodes = box_tree(&mut members, place, largest);
+        let nodes = box_tree(&mut members, LEAF, place, largest);
         Self {
             balls,
             split,

@@ -15,15 +15,10 @@
 //! path -> `read` (bytes to polygons) -> `repair` -> [`Mesh`] with its [`MeshReport`] -> [`Solid`]: `distance` to the
 //! surface, `winding` number, and the sign by it.
 //!
-//! `repair` welds vertices (`weld`, with `rounding` and `seams`), cuts polygons into triangles, drops a whole surface
-//! that is there twice (`repeats`) and finds open and non-manifold edges and parts (`topology`). Where triangles meet
-//! at non-manifold edges or are there several times, `shells` cuts space into `cells` and `labels` the solid ones.
-//! `facing` turns surfaces outward by their volume and `nesting`.
+//! `repair` welds vertices (`weld`, with `rounding`), cuts polygons into triangles, drops a whole surface that is there
+//! twice and finds open and non-manifold edges and parts (`edges`, `topology`). `facing` turns surfaces outward by their
+//! volume and nesting.
 
-mod distance;
-mod error;
-mod figure;
-mod probe;
 mod read;
 mod repair;
 mod report;
@@ -32,16 +27,11 @@ mod solid;
 mod surface;
 mod triangle_mesh;
 mod triangle_tree;
-pub(crate) mod vector;
 pub(crate) mod winding;
 
-pub use self::error::{MeshError, MeshErrorKind};
-pub use self::figure::Figure;
-pub(crate) use self::probe::{Probe, is_beside};
-pub use self::read::format::MeshFormat;
-pub use self::read::{file_bytes, from_triangles, parse, read, read_bytes};
-pub use self::report::MeshReport;
+pub use self::read::{MeshFormat, file_bytes, from_triangles, parse, read, read_bytes};
+pub use self::report::{Figure, MeshReport};
 pub use self::solid::{Frame, Solid};
 pub use self::surface::SurfaceSample;
-pub(crate) use self::surface::surface_pieces;
+pub(crate) use self::surface::{Probe, is_beside, surface_pieces};
 pub use self::triangle_mesh::Mesh;

@@ -4,14 +4,12 @@ use std::fmt;
 
 use serde::Serialize;
 
-use crate::mesh::figure::Figure;
-use crate::mesh::read::format::MeshFormat;
-use crate::mesh::repair::topology::Topology;
+use crate::mesh::read::MeshFormat;
 use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
-use crate::mesh::vector::{add, norm};
+use crate::vector::{add, norm};
 
 /// What was read, and what is amiss with it.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MeshReport {
     /// Format of the file; none for a mesh made in memory.
     pub format: Option<MeshFormat>,
@@ -71,73 +69,23 @@ pub struct MeshReport {
     pub high: [f64; 3],
 }
 
-/// Report on what reading altered.
-pub(super) struct Altered {
-    /// Triangles dropped with two corners in one place.
-    pub collapsed: usize,
-    /// How often each of the others was there.
-    pub times: usize,
-    /// As [`MeshReport::seam_vertices`].
-    pub seam_vertices: usize,
-    /// As [`MeshReport::weld_reach`].
-    pub weld_reach: f64,
-    /// As [`MeshReport::reading_notes`].
-    pub notes: Vec<String>,
-}
-
 impl MeshReport {
-    pub(super) fn new(
-        mesh: &Mesh,
-        format: Option<MeshFormat>,
-        file_vertices: usize,
-        file_triangles: usize,
-        altered: Altered,
-        topology: &Topology,
-    ) -> Self {
-        let slivers = mesh
-            .triangles
-            .iter()
-            .filter(|&&t| mesh.is_sliver(t))
-            .count();
-        let missing = mesh
-            .triangles
-            .iter()
-            .map(|&triangle| doubled_normal(mesh.corners(triangle)))
-            .fold([0.0; 3], add);
-        let area = mesh.area();
-        let (low, high) = mesh.bounds();
-        Self {
-            format,
-            file_vertices,
-            file_triangles,
-            vertices: mesh.positions.len(),
-            triangles: mesh.triangles.len(),
-            degenerate_triangles: altered.collapsed + slivers,
-            seam_vertices: altered.seam_vertices,
-            weld_reach: altered.weld_reach,
-            reading_notes: altered.notes,
-            times: altered.times,
-            open_edges: topology.open_edges,
-            open_length: topology.open_length,
-            nonmanifold_edges: topology.nonmanifold_edges,
-            unbalanced_edges: topology.unbalanced_edges,
-            // The sum of a closed surface is zero but for rounding.
-            missing_share: if topology.unbalanced_edges == 0 {
-                0.0
-            } else {
-                norm(missing) / 2.0 / area
-            },
-            parts: topology.parts,
-            turned_triangles: topology.turned_triangles,
-            inverted_parts: topology.inverted_parts,
-            nested_parts: topology.nested_parts,
-            one_sided_parts: topology.one_sided_parts,
-            repeated_triangles: topology.repeated_triangles,
-            idle_triangles: topology.idle_triangles,
-            volume: mesh.volume() - topology.overlap,
-            area,
-            low,
-            high,
+    /// Measures what has become of the mesh. The volume holds what nested parts take from it.
+    pub(super) fn measure(&mut self, mesh: &Mesh) {
+        self.vertices = mesh.positions.len();
+        self.triangles = mesh.triangles.len();
+        let slivers = mesh.triangles.iter().filter(|&&t| mesh.is_sliver(t));
+        self.degenerate_triangles += slivers.count();
+        self.area = mesh.area();
+        self.volume += mesh.volume();
+        (self.low, self.high) = mesh.bounds();
+        // The sum of a closed surface is zero but for rounding.
+        if !self.is_closed() {
+            let normals = mesh
+                .triangles
+                .iter()
+                .map(|&t| doubled_normal(mesh.corners(t)));
+            self.missing_share = norm(normals.fold([0.0; 3], add)) / 2.0 / self.area;
         }
     }
 
@@ -250,5 +198,46 @@ impl fmt::Display for MeshReport {
             Figure(self.volume),
             Figure(self.area)
         )
+    }
+}
+
+/// A length, area or volume as a person reads it: with six decimals, or in powers of ten where these would hide it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Figure(
+    /// The value, in whatever unit.
+    pub f64,
+);
+
+/// Sizes that six decimals show at least four digits of, and that a person still counts.
+const PLAIN: std::ops::Range<f64> = 1e-3..1e9;
+
+impl fmt::Display for Figure {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let Self(value) = self;
+        if *value == 0.0 || PLAIN.contains(&value.abs()) {
+            write!(f, "{value:.6}")
+        } else {
+            write!(f, "{value:.6e}")
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::Figure;
+
+    #[test]
+    fn small_and_large_figures_keep_their_digits() {
+        let printed =
+            [0.0, 0.25, -1234.5, 2.5e-7, -9.999e-4, 3.0e12].map(|v| Figure(v).to_string());
+        let expected = [
+            "0.000000",
+            "0.250000",
+            "-1234.500000",
+            "2.500000e-7",
+            "-9.999000e-4",
+            "3.000000e12",
+        ];
+        assert_eq!(printed, expected);
     }
 }

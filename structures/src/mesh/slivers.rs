@@ -5,7 +5,7 @@
 //! the same; only its pieces change.
 
 use crate::mesh::triangle_mesh::Mesh;
-use crate::mesh::vector::{along, distance, subtract};
+use crate::vector::{along, distance, subtract};
 
 /// A triangle is a sliver if its longest side is more than this times its height.
 const ASPECT: f64 = 16.0;
@@ -81,5 +81,5 @@ fn longest(&[a, b, c]: &[[f64; 3]; 3]) -> f64 {
 fn is_thin(corners: &[[f64; 3]; 3]) -> bool {
     let longest = longest(corners);
     longest * longest
-        > ASPECT * crate::mesh::vector::norm(crate::mesh::triangle_mesh::doubled_normal(*corners))
+        > ASPECT * crate::vector::norm(crate::mesh::triangle_mesh::doubled_normal(*corners))
 }

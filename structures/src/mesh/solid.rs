@@ -1,11 +1,12 @@
 //! The solid that a mesh bounds: depth, inside and nearest surface point, in a frame where lengths are about one.
 
-use crate::mesh::distance::Surface;
-use crate::mesh::error::MeshErrorKind;
+use crate::error::Error;
+use crate::mesh::repair::weld::degenerate;
 use crate::mesh::triangle_mesh::Mesh;
-use crate::mesh::triangle_tree::TriangleTree;
-use crate::mesh::vector::{along, scale, subtract};
+use crate::mesh::triangle_tree::{TriangleTree, centroid};
 use crate::mesh::{slivers, winding};
+use crate::neighbours::box_tree::{BoxNode, box_tree};
+use crate::vector::{along, bounds, cross, distance, dot, scale, subtract};
 
 /// Where a solid's own coordinates y stand in the file's: x = origin + unit y.
 ///
@@ -58,8 +59,8 @@ impl Solid {
     /// The solid of a mesh.
     ///
     /// # Errors
-    /// [`MeshErrorKind::Degenerate`] when no triangle has an area, which [`super::read`] has refused already.
-    pub fn new(mesh: &Mesh) -> Result<Self, MeshErrorKind> {
+    /// When no triangle has an area, which [`super::read`] has refused already.
+    pub fn new(mesh: &Mesh) -> Result<Self, Error> {
         let frame = Frame::of(mesh);
         let mesh = Mesh {
             positions: mesh.positions.iter().map(|&p| frame.inward(p)).collect(),
@@ -137,4 +138,126 @@ impl Solid {
     pub fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
         self.surface.nearest(point)
     }
+}
+
+/// The triangles of a mesh in a tree of bounding boxes, to measure distances to.
+struct Surface {
+    /// Corners, with the triangle's number among those that have an area.
+    triangles: Vec<(usize, [[f64; 3]; 3])>,
+    nodes: Vec<BoxNode<([f64; 3], [f64; 3])>>,
+}
+
+/// Triangles in a leaf at most.
+const LEAF: usize = 4;
+
+impl Surface {
+    /// Triangles without area are left out: they lie within the edges of their neighbours, and projecting to one
+    /// divides zero by zero.
+    fn new(mesh: &Mesh) -> Result<Self, Error> {
+        let with_area = mesh.triangles.iter().filter(|&&t| !mesh.is_sliver(t));
+        let mut triangles: Vec<_> = with_area.map(|&t| mesh.corners(t)).enumerate().collect();
+        if triangles.is_empty() {
+            return Err(degenerate(mesh.triangles.len()));
+        }
+        let nodes = box_tree(
+            &mut triangles,
+            LEAF,
+            |&(number, corners)| (centroid(corners), number),
+            |triangles| bounds(triangles.iter().flat_map(|(_, corners)| *corners)),
+        );
+        Ok(Self { triangles, nodes })
+    }
+
+    /// The nearest point of the surface.
+    fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
+        let mut best = (f64::INFINITY, [f64::NAN; 3]);
+        self.search(0, point, &mut best);
+        best.1
+    }
+
+    /// The distance to the surface, given that it is no larger than `bound`, which spares most of the search.
+    fn distance_within(&self, point: [f64; 3], bound: f64) -> f64 {
+        // The search takes what is nearer than the bound, and the bound may carry rounding of its own.
+        let bound = bound * (1.0 + 1e-9) + f64::MIN_POSITIVE;
+        let mut best = (bound * bound, [f64::NAN; 3]);
+        self.search(0, point, &mut best);
+        if best.1[0].is_nan() {
+            return self.distance(point);
+        }
+        distance(best.1, point)
+    }
+
+    /// The distance to the surface.
+    fn distance(&self, point: [f64; 3]) -> f64 {
+        distance(self.nearest(point), point)
+    }
+
+    /// Finds the nearest point below a node, if its squared distance is less than that in `best`.
+    fn search(&self, at: usize, point: [f64; 3], best: &mut (f64, [f64; 3])) {
+        let node = &self.nodes[at];
+        if node.second == 0 {
+            for &(_, corners) in &self.triangles[node.first..node.first + node.count] {
+                let near = nearest_on(corners, point);
+                let away = subtract(near, point);
+                if dot(away, away) < best.0 {
+                    *best = (dot(away, away), near);
+                }
+            }
+            return;
+        }
+        let halves = [at + 1, node.second].map(|half| {
+            let (low, high) = &self.nodes[half].known;
+            let beyond = [0, 1, 2].map(|axis| {
+                let outside = (low[axis] - point[axis]).max(point[axis] - high[axis]);
+                outside.max(0.0)
+            });
+            // Rounding must not hide a triangle that is as near as its box.
+            (dot(beyond, beyond) * (1.0 - 1e-14), half)
+        });
+        let [a, b] = if halves[1].0 < halves[0].0 {
+            [halves[1], halves[0]]
+        } else {
+            halves
+        };
+        for (bound, half) in [a, b] {
+            if bound < best.0 {
+                self.search(half, point, best);
+            }
+        }
+    }
+}
+
+/// The point of a triangle that is nearest to another point: a corner, a point of a side or one within, by the region
+/// that the other point is in (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+fn nearest_on([a, b, c]: [[f64; 3]; 3], point: [f64; 3]) -> [f64; 3] {
+    let [ab, ac, bc] = [subtract(b, a), subtract(c, a), subtract(c, b)];
+    let [from_a, from_b, from_c] = [a, b, c].map(|corner| subtract(point, corner));
+    let (ab_a, ac_a) = (dot(ab, from_a), dot(ac, from_a));
+    if ab_a <= 0.0 && ac_a <= 0.0 {
+        return a;
+    }
+    let (ab_b, ac_b) = (dot(ab, from_b), dot(ac, from_b));
+    if ab_b >= 0.0 && ac_b <= ab_b {
+        return b;
+    }
+    let (ab_c, ac_c) = (dot(ab, from_c), dot(ac, from_c));
+    if ac_c >= 0.0 && ab_c <= ac_c {
+        return c;
+    }
+    // Areas of the triangles that the point makes with the sides, as shares of one number.
+    let normal = cross(ab, ac);
+    let at_c = dot(normal, cross(ab, from_a));
+    if at_c < 0.0 && ab_a >= 0.0 && ab_b <= 0.0 {
+        return along(a, ab_a / dot(ab, ab), ab);
+    }
+    let at_b = -dot(normal, cross(ac, from_c));
+    if at_b < 0.0 && ac_a >= 0.0 && ac_c <= 0.0 {
+        return along(a, ac_a / dot(ac, ac), ac);
+    }
+    let at_a = dot(normal, cross(bc, from_b));
+    if at_a < 0.0 && ac_b - ab_b >= 0.0 && ab_c - ac_c >= 0.0 {
+        return along(b, dot(bc, from_b) / dot(bc, bc), bc);
+    }
+    let all = at_a + at_b + at_c;
+    along(along(a, at_b / all, ab), at_c / all, ac)
 }

@@ -1,6 +1,6 @@
 //! Triangle meshes.
 
-use crate::mesh::vector::{add, cross, dot, norm, scale, subtract};
+use crate::vector::{add, bounds, cross, dot, norm, scale, subtract};
 
 /// A triangle mesh with distinct vertices, oriented outward as far as it can be.
 #[derive(Clone, Debug, PartialEq)]
@@ -39,15 +39,7 @@ impl Mesh {
 
     /// Smallest and largest coordinate on each axis, in the file's unit.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for position in &self.positions {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(position[axis]);
-                high[axis] = high[axis].max(position[axis]);
-            }
-        }
-        (low, high)
+        bounds(self.positions.iter().copied())
     }
 
     /// Longest edge of the bounding box, in the file's unit.
@@ -99,8 +91,13 @@ impl Mesh {
     pub fn area(&self) -> f64 {
         self.triangles
             .iter()
-            .map(|&triangle| norm(doubled_normal(self.corners(triangle))) / 2.0)
+            .map(|&triangle| self.area_of(triangle))
             .sum()
+    }
+
+    /// Area of one triangle, in the file's unit squared.
+    pub(crate) fn area_of(&self, triangle: [u32; 3]) -> f64 {
+        norm(doubled_normal(self.corners(triangle))) / 2.0
     }
 
     /// Whether a triangle has no area to speak of.

@@ -1,7 +1,7 @@
 //! Triangles in a binary tree of clusters, with what sums over far clusters need of each.
 
 use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
-use crate::mesh::vector::{add, distance, norm, scale};
+use crate::vector::{add, bounds, distance, norm, scale};
 
 /// Triangles in a leaf.
 const LEAF: usize = 8;
@@ -128,18 +128,13 @@ fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Node>) {
     let mut area = 0.0;
     let mut area_vector = [0.0; 3];
     let mut moment = [0.0; 3];
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
+    let (low, high) = bounds(triangles.iter().map(|(middle, _)| *middle));
     for &(middle, corners) in &*triangles {
         let normal = scale(doubled_normal(corners), 0.5);
         let own = norm(normal);
         area += own;
         area_vector = add(area_vector, normal);
         moment = add(moment, scale(middle, own));
-        for axis in 0..3 {
-            low[axis] = low[axis].min(middle[axis]);
-            high[axis] = high[axis].max(middle[axis]);
-        }
     }
     let center = if area > 0.0 {
         scale(moment, 1.0 / area)

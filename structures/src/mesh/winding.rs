@@ -9,7 +9,7 @@
 use std::f64::consts::PI;
 
 use crate::mesh::triangle_tree::TriangleTree;
-use crate::mesh::vector::{cross, dot, norm, subtract};
+use crate::vector::{cross, dot, norm, subtract};
 
 /// Signed solid angle of a triangle seen from `point`, in steradians: above zero from behind, that is from inside (van
 /// Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30:2, 1983).

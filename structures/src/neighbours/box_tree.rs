@@ -1,13 +1,13 @@
-//! Binary trees of boxes over things at places, halved at the median of the longest side.
+//! Binary trees of boxes over things at places in N dimensions, halved at the median of the longest side.
 
-/// Things in a leaf at most.
-const LEAF: usize = 8;
+/// Things in a leaf at most, if nothing asks for other leaves.
+pub(crate) const LEAF: usize = 8;
 
 /// Some of the things: the box of their places, and what is known of all of them.
 #[derive(Debug)]
-pub(crate) struct BoxNode<K> {
-    pub low: [f64; 3],
-    pub high: [f64; 3],
+pub(crate) struct BoxNode<K, const N: usize = 3> {
+    pub low: [f64; N],
+    pub high: [f64; N],
     /// Where they begin in the list of all.
     pub first: usize,
     pub count: usize,
@@ -16,34 +16,36 @@ pub(crate) struct BoxNode<K> {
     pub known: K,
 }
 
-/// Sorts things into a tree, whose nodes come in depth-first order; none of nothing.
+/// Sorts things into a tree of leaves of at most `leaf` things; its nodes come in depth-first order. None of nothing.
 ///
 /// `place` is where a thing is and its number, which decides between things in one place. `known` is computed of the
 /// things of each node.
-pub(crate) fn box_tree<T, K>(
+pub(crate) fn box_tree<T, K, const N: usize>(
     things: &mut [T],
-    place: impl Fn(&T) -> ([f64; 3], usize),
+    leaf: usize,
+    place: impl Fn(&T) -> ([f64; N], usize),
     known: impl Fn(&[T]) -> K,
-) -> Vec<BoxNode<K>> {
+) -> Vec<BoxNode<K, N>> {
     let mut nodes = Vec::new();
     if !things.is_empty() {
-        build(things, 0, &place, &known, &mut nodes);
+        build(things, 0, leaf, &place, &known, &mut nodes);
     }
     nodes
 }
 
 /// Appends the node of things that begin at `first` of the whole list, and the nodes below it.
-fn build<T, K>(
+fn build<T, K, const N: usize>(
     things: &mut [T],
     first: usize,
-    place: &impl Fn(&T) -> ([f64; 3], usize),
+    leaf: usize,
+    place: &impl Fn(&T) -> ([f64; N], usize),
     known: &impl Fn(&[T]) -> K,
-    nodes: &mut Vec<BoxNode<K>>,
+    nodes: &mut Vec<BoxNode<K, N>>,
 ) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
     for thing in things.iter() {
         let (position, _) = place(thing);
-        for axis in 0..3 {
+        for axis in 0..N {
             low[axis] = low[axis].min(position[axis]);
             high[axis] = high[axis].max(position[axis]);
         }
@@ -57,21 +59,21 @@ fn build<T, K>(
         second: 0,
         known: known(things),
     });
-    if things.len() <= LEAF {
+    if things.len() <= leaf {
         return;
     }
     let side = |axis: usize| high[axis] - low[axis];
     let longer = |best, axis| if side(axis) > side(best) { axis } else { best };
-    let axis = (1..3).fold(0, longer);
+    let axis = (1..N).fold(0, longer);
     let middle = things.len() / 2;
     things.select_nth_unstable_by(middle, |a, b| {
         let ((a, one), (b, other)) = (place(a), place(b));
         a[axis].total_cmp(&b[axis]).then(one.cmp(&other))
     });
     let (before, after) = things.split_at_mut(middle);
-    build(before, first, place, known, nodes);
+    build(before, first, leaf, place, known, nodes);
     nodes[at].second = nodes.len();
-    build(after, first + middle, place, known, nodes);
+    build(after, first + middle, leaf, place, known, nodes);
 }
 
 #[cfg(test)]
@@ -85,7 +87,12 @@ mod tests {
             let position = |i: usize| [0.7, 1.9, 3.1].map(|step| spread * (step * i as f64).sin());
             for count in [0, 1, 8, 9, 300] {
                 let mut things: Vec<usize> = (0..count).collect();
-                let nodes = box_tree(&mut things, |&i| (position(i), i), |things| things.len());
+                let nodes = box_tree(
+                    &mut things,
+                    LEAF,
+                    |&i| (position(i), i),
+                    |things| things.len(),
+                );
                 let mut sorted = things.clone();
                 sorted.sort_unstable();
                 assert!(sorted.into_iter().eq(0..count));

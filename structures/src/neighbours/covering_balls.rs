@@ -1,6 +1,6 @@
 //! Balls that cover a point: whether one of many holds it, however they crowd.
 
-use crate::neighbours::box_tree::{BoxNode, box_tree};
+use crate::neighbours::box_tree::{BoxNode, LEAF, box_tree};
 
 /// A ball as the tree holds it: its centre, its radius, and its place in the list given.
 #[derive(Clone, Copy, Debug)]
@@ -10,31 +10,14 @@ struct Member {
     place: usize,
 }
 
-/// Balls in a tree of the boxes of their centres, each with the range of their radii.
+/// Balls in a tree of boxes in four dimensions, of their centres and radii.
 ///
 /// A half whose balls all hold a point, or none of which does, is decided by its box. A query therefore takes about
 /// logarithmic time also where each of n balls meets all others.
 #[derive(Debug)]
 pub struct CoveringBalls {
     members: Vec<Member>,
-    nodes: Vec<BoxNode<Radii>>,
-}
-
-/// The least and the largest radius of some balls.
-#[derive(Debug)]
-struct Radii {
-    least: f64,
-    largest: f64,
-}
-
-impl Radii {
-    fn of(members: &[Member]) -> Self {
-        let radii = || members.iter().map(|member| member.radius);
-        Self {
-            least: radii().fold(f64::INFINITY, f64::min),
-            largest: radii().fold(0.0, f64::max),
-        }
-    }
+    nodes: Vec<BoxNode<(), 4>>,
 }
 
 impl CoveringBalls {
@@ -47,8 +30,11 @@ impl CoveringBalls {
             place,
         };
         let mut members: Vec<Member> = balls.map(member).collect();
-        let place = |member: &Member| (member.center, member.place);
-        let nodes = box_tree(&mut members, place, Radii::of);
+        let place = |member: &Member| {
+            let [x, y, z] = member.center;
+            ([x, y, z, member.radius], member.place)
+        };
+        let nodes = box_tree(&mut members, LEAF, place, |_| ());
         Self { members, nodes }
     }
 
@@ -59,6 +45,7 @@ impl CoveringBalls {
 
     fn covers_below(&self, at: usize, point: [f64; 3], own: usize) -> bool {
         let node = &self.nodes[at];
+        let (smallest, largest) = (node.low[3], node.high[3]);
         let [mut nearest, mut farthest] = [0.0; 2];
         for (axis, x) in point.into_iter().enumerate() {
             let below = node.low[axis] - x;
@@ -67,11 +54,11 @@ impl CoveringBalls {
             nearest += near * near;
             farthest += far * far;
         }
-        if nearest >= node.known.largest * node.known.largest {
+        if nearest >= largest * largest {
             return false;
         }
         // Of several balls one at least is not the point's own.
-        if node.count > 1 && farthest < node.known.least * node.known.least {
+        if node.count > 1 && farthest < smallest * smallest {
             return true;
         }
         if node.second == 0 {

@@ -1,62 +1,58 @@
 //! A tree of boxes over balls that answers how far a point is from their union.
 
 use crate::ball::Ball;
-use crate::mesh::vector::{distance, dot};
+use crate::neighbours::box_tree::{BoxNode, LEAF, box_tree};
+use crate::vector::{distance, dot};
 
-/// Balls in a leaf.
-const LEAF: usize = 8;
-
-/// A binary tree over balls, halved at the median of the longest of the ranges of x, y, z and radius.
+/// A tree over balls of boxes in four dimensions, of their centres and radii.
 #[derive(Debug)]
 pub struct BallTree {
     balls: Vec<Ball>,
-    /// Nodes in depth-first order.
     nodes: Vec<Node>,
 }
 
-/// Some balls, the box of their centres and the box around them.
-#[derive(Debug)]
-struct Node {
-    center_low: [f64; 3],
-    center_high: [f64; 3],
-    low: [f64; 3],
-    high: [f64; 3],
-    largest: f64,
-    first: u32,
-    count: u32,
-    /// The second half; the first follows this node. Zero in a leaf.
-    second: u32,
-}
+/// Some balls, with the box around them.
+type Node = BoxNode<[[f64; 3]; 2], 4>;
 
-impl Node {
-    /// No ball of the node is nearer than this to `point`, in the sense of [`BallTree::distance`].
-    fn bound(&self, point: [f64; 3]) -> f64 {
-        let beyond = |low: &[f64; 3], high: &[f64; 3]| {
-            let beyond = [0, 1, 2].map(|axis| {
-                (low[axis] - point[axis])
-                    .max(point[axis] - high[axis])
-                    .max(0.0)
-            });
-            dot(beyond, beyond)
-        };
-        let centers = beyond(&self.center_low, &self.center_high).sqrt() - self.largest;
-        let balls = beyond(&self.low, &self.high);
-        if balls > 0.0 {
-            centers.max(balls.sqrt())
-        } else {
-            centers
-        }
+/// No ball of a node is nearer than this to `point`, in the sense of [`BallTree::distance`].
+fn bound(node: &Node, point: [f64; 3]) -> f64 {
+    let beyond = |low: &[f64], high: &[f64]| {
+        let beyond = [0, 1, 2].map(|axis| {
+            (low[axis] - point[axis])
+                .max(point[axis] - high[axis])
+                .max(0.0)
+        });
+        dot(beyond, beyond)
+    };
+    let centers = beyond(&node.low, &node.high).sqrt() - node.high[3];
+    let [low, high] = &node.known;
+    let balls = beyond(low, high);
+    if balls > 0.0 {
+        centers.max(balls.sqrt())
+    } else {
+        centers
     }
 }
 
 impl BallTree {
     /// Builds the tree over any number of balls.
     pub fn new(balls: &[Ball]) -> Self {
-        let mut balls = balls.to_vec();
-        let mut nodes = Vec::new();
-        if !balls.is_empty() {
-            build(&mut balls, 0, &mut nodes);
-        }
+        let mut numbered: Vec<(usize, Ball)> = balls.iter().copied().enumerate().collect();
+        let place = |(number, ball): &(usize, Ball)| {
+            let [x, y, z] = ball.center;
+            ([x, y, z, ball.radius], *number)
+        };
+        let nodes = box_tree(&mut numbered, LEAF, place, |balls| {
+            let mut around = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
+            for (_, Ball { center, radius }) in balls {
+                for axis in 0..3 {
+                    around[0][axis] = around[0][axis].min(center[axis] - radius);
+                    around[1][axis] = around[1][axis].max(center[axis] + radius);
+                }
+            }
+            around
+        });
+        let balls = numbered.into_iter().map(|(_, ball)| ball).collect();
         Self { balls, nodes }
     }
 
@@ -65,18 +61,14 @@ impl BallTree {
     ///
     /// The search stops at the first ball found within `enough`, so a value up to that says no more than "within".
     pub fn distance(&self, point: [f64; 3], enough: f64) -> f64 {
-        let mut best = f64::INFINITY;
-        if let Some(root) = self.nodes.first() {
-            self.search(0, root.bound(point), point, enough, &mut best);
-        }
-        best
+        self.distance_within(point, enough, f64::INFINITY)
     }
 
     /// As [`Self::distance`], never more than `at_most`, which spares the search for what lies farther.
     pub fn distance_within(&self, point: [f64; 3], enough: f64, at_most: f64) -> f64 {
         let mut best = at_most;
         if let Some(root) = self.nodes.first() {
-            self.search(0, root.bound(point), point, enough, &mut best);
+            self.search(0, bound(root, point), point, enough, &mut best);
         }
         best
     }
@@ -100,20 +92,20 @@ impl BallTree {
     fn search_holder(&self, at: usize, ball: &Ball, counts: impl Fn(&Ball) -> bool + Copy) -> bool {
         let node = &self.nodes[at];
         if node.second == 0 {
-            let first = node.first as usize;
-            let balls = &self.balls[first..first + node.count as usize];
+            let balls = &self.balls[node.first..node.first + node.count];
             return balls.iter().any(|other| other.holds(ball) && counts(other));
         }
-        let halves =
-            [at + 1, node.second as usize].map(|half| (half, self.nodes[half].bound(ball.center)));
-        let [a, b] = if halves[1].1 < halves[0].1 {
-            [halves[1], halves[0]]
-        } else {
-            halves
-        };
+        let [a, b] = self.halves(at, ball.center);
         // A holder is as deep about the centre as the ball is large.
         (a.1 <= -ball.radius && self.search_holder(a.0, ball, counts))
             || (b.1 <= -ball.radius && self.search_holder(b.0, ball, counts))
+    }
+
+    /// The halves of a node with their bounds, the nearer one first.
+    fn halves(&self, at: usize, point: [f64; 3]) -> [(usize, f64); 2] {
+        let halves = [at + 1, self.nodes[at].second];
+        let [a, b] = halves.map(|half| (half, bound(&self.nodes[half], point)));
+        if b.1 < a.1 { [b, a] } else { [a, b] }
     }
 
     fn search(&self, at: usize, bound: f64, point: [f64; 3], enough: f64, best: &mut f64) {
@@ -123,19 +115,12 @@ impl BallTree {
         }
         let node = &self.nodes[at];
         if node.second == 0 {
-            let first = node.first as usize;
-            for ball in &self.balls[first..first + node.count as usize] {
+            for ball in &self.balls[node.first..node.first + node.count] {
                 *best = best.min(distance(ball.center, point) - ball.radius);
             }
             return;
         }
-        let halves =
-            [at + 1, node.second as usize].map(|half| (half, self.nodes[half].bound(point)));
-        let [a, b] = if halves[1].1 < halves[0].1 {
-            [halves[1], halves[0]]
-        } else {
-            halves
-        };
+        let [a, b] = self.halves(at, point);
         self.search(a.0, a.1, point, enough, best);
         if *best > enough {
             self.search(b.0, b.1, point, enough, best);
@@ -153,49 +138,6 @@ fn compare(a: [f64; 3], b: [f64; 3]) -> std::cmp::Ordering {
     (a[0].total_cmp(&b[0]))
         .then(a[1].total_cmp(&b[1]))
         .then(a[2].total_cmp(&b[2]))
-}
-
-fn build(balls: &mut [Ball], first: usize, nodes: &mut Vec<Node>) {
-    let mut node = Node {
-        center_low: [f64::INFINITY; 3],
-        center_high: [f64::NEG_INFINITY; 3],
-        low: [f64::INFINITY; 3],
-        high: [f64::NEG_INFINITY; 3],
-        largest: 0.0,
-        first: first as u32,
-        count: balls.len() as u32,
-        second: 0,
-    };
-    let mut smallest = f64::INFINITY;
-    for &Ball { center, radius } in &*balls {
-        node.largest = node.largest.max(radius);
-        smallest = smallest.min(radius);
-        for (axis, middle) in center.into_iter().enumerate() {
-            node.center_low[axis] = node.center_low[axis].min(middle);
-            node.center_high[axis] = node.center_high[axis].max(middle);
-            node.low[axis] = node.low[axis].min(middle - radius);
-            node.high[axis] = node.high[axis].max(middle + radius);
-        }
-    }
-    let range = |axis: usize| match axis {
-        3 => node.largest - smallest,
-        _ => node.center_high[axis] - node.center_low[axis],
-    };
-    let axis = (0..4)
-        .max_by(|&a, &b| range(a).total_cmp(&range(b)))
-        .unwrap_or(0);
-    let place = nodes.len();
-    nodes.push(node);
-    if balls.len() <= LEAF {
-        return;
-    }
-    let middle = balls.len() / 2;
-    let key = |ball: &Ball| ball.center.get(axis).copied().unwrap_or(ball.radius);
-    balls.select_nth_unstable_by(middle, |a, b| key(a).total_cmp(&key(b)));
-    let (left, right) = balls.split_at_mut(middle);
-    build(left, first, nodes);
-    nodes[place].second = nodes.len() as u32;
-    build(right, first + middle, nodes);
 }
 
 #[cfg(test)]

@@ -11,10 +11,10 @@ use crate::ball::Ball;
 use crate::mesh::Probe;
 use crate::mesh::Solid;
 use crate::mesh::SurfaceSample;
-use crate::mesh::vector::{along, distance};
 use crate::neighbours::SpatialHash;
 use crate::sampling::ball_tree::BallTree;
 use crate::sampling::grid::DepthField;
+use crate::vector::{along, distance};
 
 /// Distance between a surface point and the nearest sample, as a share of eps.
 pub const SAMPLE_SPACING: f64 = 0.1;

@@ -29,8 +29,8 @@ use crate::mesh::Solid;
 use crate::neighbours::SpatialHash;
 use crate::sampling::cover;
 use crate::sampling::cover::Covering;
-use crate::sampling::error::SampleError;
 use crate::sampling::grid::DepthField;
+use crate::sampling::sample::SampleError;
 use crate::sampling::skeletal_density::{Priority, priorities};
 
 /// The protrusion factor mu and the order of the nodes.

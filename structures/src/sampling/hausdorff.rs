@@ -21,12 +21,12 @@ use rayon::prelude::*;
 use crate::ball::Ball;
 use crate::mesh::Solid;
 use crate::mesh::is_beside;
-use crate::mesh::vector::{along, distance, subtract};
 use crate::sampling::ball_tree::BallTree;
 use crate::sampling::beyond::volume_beyond;
 use crate::sampling::cover::SAMPLE_SPACING;
 use crate::sampling::grid::DepthField;
 use crate::sampling::outward::farthest;
+use crate::vector::{along, distance, subtract};
 
 /// How much farther out than measured a point of a ball's sphere may be, as a share of eps.
 const OUTWARD_TOLERANCE: f64 = 0.01;

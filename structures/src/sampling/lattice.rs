@@ -93,7 +93,7 @@ mod tests {
                     .iter()
                     .zip(&fitted.weights)
                     .map(|(ball, weight)| {
-                        let d = crate::mesh::vector::distance(ball.center, place);
+                        let d = crate::vector::distance(ball.center, place);
                         weight * bump.value(d / ball.radius)
                     })
                     .sum();

@@ -11,7 +11,7 @@
 //!
 //! - [`decomposition`]: Behandish and Ilieş' Algorithm 1.
 //! - [`packing`]: Weller and Zachmann's distance-greedy packing.
-//! - [`octree`], [`voxels`]: balls about the cells of an octree, and about voxels.
+//! - [`octree`], and [`Method::Voxels`]: balls about the cells of an octree, and about voxels.
 //! - [`lattice`]: balls of one radius, for correlating solids at a known resolution.
 //!
 //! The first four share one [`grid`], cover the same nodes X and are measured by [`hausdorff`]. [`feature_size`] says
@@ -21,7 +21,6 @@ pub mod ball_tree;
 mod beyond;
 pub mod cover;
 pub mod decomposition;
-mod error;
 pub mod feature_size;
 pub mod grid;
 pub mod hausdorff;
@@ -31,9 +30,7 @@ mod outward;
 pub mod packing;
 pub mod sample;
 pub mod skeletal_density;
-pub mod voxels;
 pub mod weights;
 
-pub use self::error::SampleError;
-pub use self::sample::{BallSet, Method, Sampling, SetName, Step, knots, sample};
+pub use self::sample::{BallSet, Method, SampleError, Sampling, SetName, Step, knots, sample};
 pub use crate::ball::Ball;

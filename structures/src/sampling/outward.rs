@@ -10,7 +10,7 @@ use std::collections::BinaryHeap;
 
 use crate::ball::Ball;
 use crate::mesh::Solid;
-use crate::mesh::vector::{add, along, distance, norm, scale};
+use crate::vector::{add, along, distance, norm, scale};
 
 /// Points that are looked at for all balls together, at most.
 const MAX_POINTS: usize = 200_000;

@@ -9,10 +9,19 @@ use crate::knots::{Knots, KnotsError};
 use crate::mesh::{Frame, Solid};
 use crate::sampling::cover::Covering;
 use crate::sampling::decomposition::{DecompositionOptions, decompose_in_order};
-use crate::sampling::error::SampleError;
 use crate::sampling::grid::{DepthField, Grid};
 use crate::sampling::skeletal_density::{Priority, priorities};
-use crate::sampling::{octree, packing, voxels};
+use crate::sampling::{octree, packing};
+
+/// Why a solid could not be sampled.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+pub enum SampleError {
+    /// No node of the grid is inside; for Algorithm 1, nor any point under the surface.
+    #[error(
+        "no ball fits inside the mesh: none of the grid's nodes is inside it, or it bounds no solid"
+    )]
+    NothingInside,
+}
 
 /// Method by which balls are chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -23,7 +32,8 @@ pub enum Method {
     WellerZachmann,
     /// Balls about octree cells: see [`super::octree`].
     Octree,
-    /// A ball a node: see [`super::voxels`].
+    /// Uniform sampling, B&I's own baseline: about every inside node the ball of radius eps that holds the cube of one
+    /// spacing.
     Voxels,
 }
 
@@ -135,7 +145,12 @@ pub fn sample(solid: &Solid, per_axis: usize, method: Method) -> Result<Sampling
             vec![set(SetName::Octree, balls, step("octree"))]
         }
         Method::Voxels => {
-            let balls = voxels::voxels(&field);
+            let radius = field.grid.epsilon();
+            let ball = |&node: &usize| Ball {
+                center: field.grid.node(node),
+                radius,
+            };
+            let balls = nodes.iter().map(ball).collect();
             vec![set(SetName::Voxels, balls, step("voxels"))]
         }
     };

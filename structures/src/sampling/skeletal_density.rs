@@ -25,8 +25,8 @@ use rayon::prelude::*;
 
 use crate::mesh::Solid;
 use crate::mesh::surface_pieces;
-use crate::mesh::vector::distance;
 use crate::sampling::grid::DepthField;
+use crate::vector::distance;
 
 /// Width s of "nearly nearest", as a share of the distance.
 pub const SHARE_WIDTH: f64 = 0.2;

@@ -8,15 +8,14 @@ mod ply;
 use std::fs;
 
 use crate::solids::{Surface, cuboid};
-use knotdock_structures::mesh::{
-    Mesh, MeshError, MeshErrorKind, MeshFormat, MeshReport, parse, read,
-};
+use knotdock_structures::Error;
+use knotdock_structures::mesh::{Mesh, MeshFormat, MeshReport, parse, read};
 
 fn cube() -> Surface {
     cuboid([0.0; 3], [10.0; 3])
 }
 
-fn named(name: &str, bytes: &[u8]) -> Result<(Mesh, MeshReport), MeshError> {
+fn named(name: &str, bytes: &[u8]) -> Result<(Mesh, MeshReport), Error> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join(name);
     fs::write(&path, bytes).unwrap();
@@ -198,12 +197,12 @@ fn other_kinds_are_named() {
     ] {
         for name in ["a.stl", "a.obj", "a.ply", "a.off", "a.3mf", "a"] {
             let error = named(name, bytes).unwrap_err();
+            assert!(error.message().contains(kind), "{name}: {error}");
             assert!(
-                matches!(error.kind, MeshErrorKind::Foreign { .. }),
+                error.message().contains("not a mesh that can be read"),
                 "{name}: {error}"
             );
-            assert!(error.to_string().contains(kind), "{name}: {error}");
-            assert!(error.remedy().contains(remedy), "{}", error.remedy());
+            assert!(error.remedy().unwrap().contains(remedy), "{error:?}");
         }
     }
     // Text of no known kind shows how it begins.
@@ -319,10 +318,8 @@ fn what_bounds_nothing_is_left_out() {
     // A vertex that a face uses is refused at its line.
     let used = obj.replacen("v 10.0 10.0 0.0", "v 10.0 nan 0.0", 1);
     let error = parse(used.as_bytes(), MeshFormat::Obj).unwrap_err();
-    assert!(
-        matches!(error, MeshErrorKind::Coordinate { line: Some(6), .. }),
-        "{error}"
-    );
+    assert_eq!(error.line(), Some(6), "{error}");
+    assert!(error.message().contains("coordinate NaN"), "{error}");
     // Facets of STL.
     let stl = cube.stl_text();
     for (facet, words) in [

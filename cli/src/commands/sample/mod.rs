@@ -139,7 +139,7 @@ impl Sample {
         let reading = Step::since("reading the mesh", start);
         console.say(format!("Mesh: {report}"));
         self.warn(report.warnings(), &console)?;
-        let solid = Solid::new(&mesh).map_err(|error| Error::input(error).at(&self.mesh))?;
+        let solid = Solid::new(&mesh).map_err(|error| error.at(&self.mesh))?;
         let mut sampling = sample(&solid, self.grid.per_axis, method).map_err(|error| {
             Error::input(error)
                 .at(&self.mesh)

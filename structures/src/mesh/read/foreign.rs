@@ -1,6 +1,6 @@
 //! Files of other kinds under a mesh's name, or under none: what they are, and what to give in their place.
 
-use crate::mesh::error::MeshErrorKind;
+use crate::error::Error;
 use crate::mesh::read::encoding::text_of;
 use crate::mesh::read::words::lines;
 
@@ -101,9 +101,11 @@ const ELEMENTS: [(&str, &str, &str); 10] = [
 ];
 
 /// Refuses what is surely a file of another kind.
-pub fn refuse(bytes: &[u8]) -> Result<(), MeshErrorKind> {
+pub fn refuse(bytes: &[u8]) -> Result<(), Error> {
     match kind_of(bytes) {
-        Some((kind, remedy)) => Err(MeshErrorKind::Foreign { kind, remedy }),
+        Some((kind, remedy)) => {
+            Err(Error::input(format!("this is {kind}, not a mesh that can be read")).help(remedy))
+        }
         None => Ok(()),
     }
 }

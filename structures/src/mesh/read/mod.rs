@@ -1,17 +1,13 @@
 //! From a file to a mesh: STL (text and binary), OBJ, PLY (text and binary) and OFF.
 //!
-//! Binary PLY is read by the crate `ply-rs-bw`. The others are read here, by a page each, because their crates fall
-//! short:
-//!
-//! - those for STL take a binary file whose header begins with `solid` for text, and keep only the first solid and 24
-//!   bits of a number;
-//! - neither they nor those for OBJ say on which line a file breaks.
+//! They are read here, by a page each, because the crates for them fall short: those for STL take a binary file whose
+//! header begins with `solid` for text, and keep only the first solid and 24 bits of a number; that for PLY refuses
+//! numbers and blank lines that real files have; none but that for PLY reports the line on which a file breaks.
 //!
 //! What a file begins with decides how it is read, then its name's ending. A file of another kind is refused by name.
 
 pub(super) mod encoding;
 pub(super) mod foreign;
-pub(super) mod format;
 pub(super) mod obj;
 pub(super) mod off;
 pub(super) mod ply;
@@ -23,13 +19,28 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-use crate::mesh::error::{MeshError, MeshErrorKind};
+use serde::Serialize;
+
+use crate::error::Error;
 use crate::mesh::read::encoding::{text_of, unified};
-use crate::mesh::read::format::MeshFormat;
-use crate::mesh::read::soup::{At, Soup};
-use crate::mesh::repair::{repeats, topology, weld};
-use crate::mesh::report::{Altered, MeshReport};
+use crate::mesh::read::soup::{At, Soup, broken, no_such_vertex, too_large};
+use crate::mesh::repair::{edges, topology, weld};
+use crate::mesh::report::MeshReport;
 use crate::mesh::triangle_mesh::Mesh;
+
+/// File format of a mesh.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum MeshFormat {
+    /// Stereolithography, text or binary.
+    Stl,
+    /// Wavefront OBJ.
+    Obj,
+    /// Stanford polygon format, text or binary.
+    Ply,
+    /// Object file format of Geomview.
+    Off,
+}
 
 /// Largest file that is read, in bytes: 40 million triangles of binary STL.
 const LARGEST_FILE: u64 = 2 << 30;
@@ -39,42 +50,46 @@ const LARGEST_FILE: u64 = 2 << 30;
 /// The format is detected from the first bytes, else from the name's ending. Numbers keep all the digits of the file.
 ///
 /// # Errors
-/// [`MeshError`] when the file cannot be read or understood, or when the mesh is empty, flat or degenerate, or has a
+/// When the file cannot be read or understood, or when the mesh is empty, flat or degenerate, or has a
 /// coordinate that is not finite.
-pub fn read(path: &Path) -> Result<(Mesh, MeshReport), MeshError> {
+pub fn read(path: &Path) -> Result<(Mesh, MeshReport), Error> {
     read_bytes(path, &file_bytes(path)?)
 }
 
 /// The bytes of a mesh's file. What is read once can be a pipe.
 ///
 /// # Errors
-/// [`MeshError`] when the file cannot be read or is too large.
-pub fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
-    let at = |kind| MeshError::at(path, kind);
-    let metadata = fs::metadata(path).map_err(|error| {
-        at(match error.kind() {
-            std::io::ErrorKind::NotFound => MeshErrorKind::Missing,
-            _ => MeshErrorKind::Unreadable(error),
-        })
-    })?;
+/// When the file cannot be read or is too large.
+pub fn file_bytes(path: &Path) -> Result<Vec<u8>, Error> {
+    let unreadable = |error: std::io::Error| {
+        match error.kind() {
+            std::io::ErrorKind::NotFound => {
+                Error::input("there is no such file").help("check the path")
+            }
+            _ => Error::input(format!("the file cannot be read: {error}"))
+                .help("check the permissions of the file and that it is on a readable disk"),
+        }
+        .at(path)
+    };
+    let metadata = fs::metadata(path).map_err(unreadable)?;
     if metadata.is_dir() {
-        return Err(at(MeshErrorKind::Directory));
+        return Err(Error::input("this is a directory, not a mesh file")
+            .at(path)
+            .help("name one .stl, .obj, .ply or .off file"));
     }
-    let too_large = |bytes: String| {
-        at(MeshErrorKind::TooLarge(format!(
-            "{bytes} bytes, where {LARGEST_FILE} are read"
-        )))
+    let refuse = |bytes: String| {
+        Err(too_large(format!("{bytes} bytes, where {LARGEST_FILE} are read")).at(path))
     };
     if metadata.len() > LARGEST_FILE {
-        return Err(too_large(metadata.len().to_string()));
+        return refuse(metadata.len().to_string());
     }
     // A pipe has no length beforehand.
     let mut bytes = Vec::with_capacity(metadata.len() as usize);
     fs::File::open(path)
         .and_then(|file| file.take(LARGEST_FILE + 1).read_to_end(&mut bytes))
-        .map_err(|error| at(MeshErrorKind::Unreadable(error)))?;
+        .map_err(unreadable)?;
     if bytes.len() as u64 > LARGEST_FILE {
-        return Err(too_large(format!("more than {LARGEST_FILE}")));
+        return refuse(format!("more than {LARGEST_FILE}"));
     }
     Ok(bytes)
 }
@@ -83,8 +98,7 @@ pub fn file_bytes(path: &Path) -> Result<Vec<u8>, MeshError> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_bytes(path: &Path, bytes: &[u8]) -> Result<(Mesh, MeshReport), MeshError> {
-    let at = |kind| MeshError::at(path, kind);
+pub fn read_bytes(path: &Path, bytes: &[u8]) -> Result<(Mesh, MeshReport), Error> {
     let bytes = unified(bytes);
     let ending = path
         .extension()
@@ -97,12 +111,14 @@ pub fn read_bytes(path: &Path, bytes: &[u8]) -> Result<(Mesh, MeshReport), MeshE
         _ => None,
     };
     match sure_format(&bytes).or_else(named) {
-        Some(format) => parse(&bytes, format).map_err(at),
-        None => {
-            foreign::refuse(&bytes).map_err(at)?;
-            Err(at(MeshErrorKind::UnknownFormat))
-        }
+        Some(format) => parse(&bytes, format),
+        None => foreign::refuse(&bytes).and_then(|()| {
+            Err(Error::input("the format is not known: neither STL, OBJ, PLY nor OFF").help(
+                "give an STL, OBJ, PLY or OFF file, with the ending .stl, .obj, .ply or .off, not compressed",
+            ))
+        }),
     }
+    .map_err(|error| error.at(path))
 }
 
 /// The format, where what the file begins with leaves no doubt.
@@ -127,16 +143,14 @@ fn sure_format(bytes: &[u8]) -> Option<MeshFormat> {
 ///
 /// # Errors
 /// As [`read`].
-pub fn parse(bytes: &[u8], format: MeshFormat) -> Result<(Mesh, MeshReport), MeshErrorKind> {
+pub fn parse(bytes: &[u8], format: MeshFormat) -> Result<(Mesh, MeshReport), Error> {
     let bytes = unified(bytes);
     if sure_format(&bytes) != Some(format) {
         foreign::refuse(&bytes)?;
     }
     let text = || {
-        text_of(&bytes).ok_or_else(|| MeshErrorKind::Syntax {
-            line: None,
-            what: "these are binary data, where the format is a text".to_owned(),
-        })
+        text_of(&bytes)
+            .ok_or_else(|| broken(None, "these are binary data, where the format is a text"))
     };
     let mut soup = match format {
         MeshFormat::Stl => stl::parse(&bytes),
@@ -151,22 +165,18 @@ pub fn parse(bytes: &[u8], format: MeshFormat) -> Result<(Mesh, MeshReport), Mes
 /// A mesh from vertices (any unit) and triangles of their indices, treated as one read from a file.
 ///
 /// # Errors
-/// [`MeshErrorKind`] when an index is out of range or the mesh is unusable.
+/// When an index is out of range or the mesh is unusable.
 pub fn from_triangles(
     positions: &[[f64; 3]],
     triangles: &[[u32; 3]],
-) -> Result<(Mesh, MeshReport), MeshErrorKind> {
+) -> Result<(Mesh, MeshReport), Error> {
     let mut soup = Soup::default();
     for &position in positions {
         soup.push_vertex(position, None)?;
     }
     for &index in triangles.iter().flatten() {
         if index as usize >= positions.len() {
-            return Err(MeshErrorKind::Index {
-                line: None,
-                index: i64::from(index),
-                vertices: positions.len(),
-            });
+            return Err(no_such_vertex(None, i64::from(index), positions.len()));
         }
     }
     for triangle in triangles {
@@ -177,48 +187,34 @@ pub fn from_triangles(
 }
 
 /// Welds, checks and orients.
-fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport), MeshErrorKind> {
+fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport), Error> {
     if soup.faces.is_empty() {
-        return Err(MeshErrorKind::Empty);
+        return Err(Error::input("the mesh has no triangles")
+            .help("give a surface mesh with faces; point clouds and curves bound no solid"));
     }
-    let read_vertices = soup.positions.len();
-    let read_triangles = soup.faces.triangle_count();
-    let welded = weld::weld(soup.positions, soup.faces, &soup.digits)?;
-    let altered = Altered {
-        collapsed: read_triangles - welded.triangles.len(),
-        times: 1,
-        seam_vertices: welded.seam_vertices,
-        weld_reach: welded.reach,
-        notes: soup.notes.into_sentences(),
+    let mut report = MeshReport {
+        format,
+        file_vertices: soup.positions.len(),
+        file_triangles: soup.faces.triangle_count(),
+        reading_notes: soup.notes.into_sentences(),
+        ..MeshReport::default()
     };
-    let mut triangles = welded.triangles;
-    let times = repeats::keep_first(&mut triangles);
-    let mut mesh = Mesh {
-        positions: welded.positions,
-        triangles,
-        closed: false,
-    };
+    let mut mesh = weld::weld(soup.positions, soup.faces, &soup.digits, &mut report)?;
+    report.times = edges::keep_first(&mut mesh.triangles);
     if mesh
         .triangles
         .iter()
         .all(|&triangle| mesh.is_sliver(triangle))
     {
-        return Err(MeshErrorKind::Degenerate {
-            triangles: read_triangles,
-        });
+        return Err(weld::degenerate(report.file_triangles));
     }
     if mesh.is_flat() {
-        return Err(MeshErrorKind::Flat);
+        return Err(Error::input(
+            "the mesh is flat: all its vertices lie in one plane, so it bounds no solid",
+        )
+        .help("give the surface of a solid, with a thickness"));
     }
-    let topology = topology::orient(&mut mesh)?;
-    mesh.closed = topology.unbalanced_edges == 0;
-    let report = MeshReport::new(
-        &mesh,
-        format,
-        read_vertices,
-        read_triangles,
-        Altered { times, ..altered },
-        &topology,
-    );
+    topology::orient(&mut mesh, &mut report)?;
+    report.measure(&mesh);
     Ok((mesh, report))
 }

@@ -2,8 +2,8 @@
 
 use std::borrow::Cow;
 
-use crate::mesh::error::MeshErrorKind;
-use crate::mesh::read::soup::{At, Soup};
+use crate::error::Error;
+use crate::mesh::read::soup::{At, Soup, no_such_vertex};
 use crate::mesh::read::words::{lines, real, shortened};
 
 /// Keywords other than `v` that a line of an OBJ file may begin with.
@@ -48,7 +48,7 @@ fn joined(text: &str) -> Cow<'_, str> {
 }
 
 /// Reads a file.
-pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
+pub fn parse(text: &str) -> Result<Soup, Error> {
     let text = joined(text);
     let mut soup = Soup::default();
     let mut corners = Vec::new();
@@ -85,13 +85,7 @@ pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
                         .and_then(|place| u32::try_from(place).ok())
                     {
                         Some(place) => corners.push(place),
-                        None => {
-                            return Err(MeshErrorKind::Index {
-                                line: Some(line.number),
-                                index,
-                                vertices: count,
-                            });
-                        }
+                        None => return Err(no_such_vertex(line.number, index, count)),
                     }
                 }
                 soup.push_face(&corners, At::Line(line.number));

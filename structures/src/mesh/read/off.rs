@@ -4,8 +4,8 @@
 //! The keyword may be in small letters and the counts may be glued to it (`OFF8 12 0`, as in ModelNet). Lines may be
 //! wrapped, or be one.
 
-use crate::mesh::error::MeshErrorKind;
-use crate::mesh::read::soup::{At, Soup};
+use crate::error::Error;
+use crate::mesh::read::soup::{At, Soup, broken, no_such_vertex};
 use crate::mesh::read::words::{Line, Records, by_line_or_stream, lines};
 
 /// The keyword that a file begins with, and the letters before its `OFF`.
@@ -34,12 +34,11 @@ struct Shape {
 }
 
 /// Reads a file.
-pub fn parse(text: &str) -> Result<Soup, MeshErrorKind> {
+pub fn parse(text: &str) -> Result<Soup, Error> {
     let mut all = lines(text, true);
-    let first = all.next().ok_or_else(|| MeshErrorKind::Syntax {
-        line: None,
-        what: "the file is empty".to_owned(),
-    })?;
+    let first = all
+        .next()
+        .ok_or_else(|| broken(None, "the file is empty"))?;
     let mut rest = Some(first);
     let mut more = vec![0];
     if let Some((word, prefix)) = keyword(first.text) {
@@ -84,7 +83,7 @@ fn numbers_after(prefix: &str) -> Option<Vec<usize>> {
 fn body<'a, L: Iterator<Item = Line<'a>>>(
     words: &mut Records<'a, L>,
     shape: &Shape,
-) -> Result<Soup, MeshErrorKind> {
+) -> Result<Soup, Error> {
     words.begin(|| "the number of vertices".to_owned())?;
     let vertices: usize = number(words, "the number of vertices")?;
     let faces: usize = number(words, "the number of faces")?;
@@ -114,13 +113,7 @@ fn body<'a, L: Iterator<Item = Line<'a>>>(
                 .filter(|&index| (index as usize) < vertices)
             {
                 Some(index) => corners.push(index),
-                None => {
-                    return Err(MeshErrorKind::Index {
-                        line: Some(words.line().number),
-                        index,
-                        vertices,
-                    });
-                }
+                None => return Err(no_such_vertex(words.line().number, index, vertices)),
             }
         }
         soup.push_face(&corners, at);
@@ -131,7 +124,7 @@ fn body<'a, L: Iterator<Item = Line<'a>>>(
 fn number<'a, L: Iterator<Item = Line<'a>>, T: std::str::FromStr>(
     words: &mut Records<'a, L>,
     what: &str,
-) -> Result<T, MeshErrorKind> {
+) -> Result<T, Error> {
     let word = words.next();
     words.line().number(word, what)
 }

@@ -1,9 +1,34 @@
 //! Vertices and faces of a file, and what was left out.
 
+use std::fmt;
+
 use crate::LARGEST_LENGTH;
-use crate::mesh::error::MeshErrorKind;
-use crate::mesh::repair::faces::Faces;
+use crate::error::Error;
 use crate::mesh::repair::rounding::Digits;
+
+/// A breach of the format's rules, at a 1-based line of a text.
+pub fn broken(line: impl Into<Option<usize>>, what: impl fmt::Display) -> Error {
+    at_line(line, what).help("export the mesh again: the file may be cut short or written by hand")
+}
+
+/// A face that names a vertex that the file does not have: `index` as it is written, with `vertices` to choose from.
+pub fn no_such_vertex(line: impl Into<Option<usize>>, index: i64, vertices: usize) -> Error {
+    at_line(
+        line,
+        format!("a face names vertex {index}, but there are {vertices}"),
+    )
+    .help("export the mesh again: faces and vertices do not fit together")
+}
+
+fn at_line(line: impl Into<Option<usize>>, what: impl fmt::Display) -> Error {
+    Error::input(what).on_line(line.into().map(|line| line as u64))
+}
+
+/// The refusal of a file or a mesh that is too large; `what` says by what.
+pub fn too_large(what: impl fmt::Display) -> Error {
+    Error::input(format!("the mesh is too large: {what}"))
+        .help("decimate the mesh, or cut it into parts")
+}
 
 /// Vertices and faces in the file's order and unit.
 #[derive(Debug, Default)]
@@ -39,8 +64,8 @@ pub enum At {
     Vertex(usize),
 }
 
-impl std::fmt::Display for At {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+impl fmt::Display for At {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Line(number) => write!(f, "on line {number}"),
             Self::Record(number) => write!(f, "in record {number}"),
@@ -119,17 +144,10 @@ pub fn is_finite(position: [f64; 3]) -> bool {
 impl Soup {
     /// Adds a vertex. One that no distance can be computed from must not be used by a face; see
     /// [`settle`](Self::settle).
-    pub fn push_vertex(
-        &mut self,
-        position: [f64; 3],
-        line: Option<usize>,
-    ) -> Result<u32, MeshErrorKind> {
+    pub fn push_vertex(&mut self, position: [f64; 3], line: Option<usize>) -> Result<u32, Error> {
         let index = self.positions.len();
         let Ok(vertex) = u32::try_from(index) else {
-            return Err(MeshErrorKind::TooLarge(format!(
-                "more than {} vertices",
-                u32::MAX
-            )));
+            return Err(too_large(format!("more than {} vertices", u32::MAX)));
         };
         let bad = |value: &f64| value.is_nan() || value.abs() > LARGEST_LENGTH;
         if let Some(value) = position.into_iter().find(bad) {
@@ -153,7 +171,7 @@ impl Soup {
     }
 
     /// Refuses faces that use a vertex without a place; where no face does, takes note of it.
-    pub fn settle(&mut self) -> Result<(), MeshErrorKind> {
+    pub fn settle(&mut self) -> Result<(), Error> {
         if self.unplaced.is_empty() {
             return Ok(());
         }
@@ -168,11 +186,13 @@ impl Soup {
                 line,
                 value,
             } = self.unplaced[first];
-            return Err(MeshErrorKind::Coordinate {
-                line,
-                what: format!("vertex {}", u64::from(vertex) + 1),
-                value,
-            });
+            let number = u64::from(vertex) + 1;
+            let what = format!(
+                "vertex {number} has coordinate {value:e}; coordinates must be finite and at most 1e30 in magnitude"
+            );
+            return Err(at_line(line, what).help(
+                "export the mesh again from a program that reports what is broken, or remove the vertex",
+            ));
         }
         for bad in std::mem::take(&mut self.unplaced) {
             let at = bad
@@ -181,5 +201,54 @@ impl Soup {
             self.notes.left_out(LeftOut::VertexWithoutPlace, at);
         }
         Ok(())
+    }
+}
+
+/// Polygons of three or more corners.
+#[derive(Clone, Debug, Default)]
+pub struct Faces {
+    /// Corners of all faces.
+    corners: Vec<u32>,
+    /// Number of corners of each face.
+    sizes: Vec<u32>,
+}
+
+impl Faces {
+    /// Adds a face of three or more corners; fewer bound nothing.
+    pub fn push(&mut self, corners: &[u32]) {
+        if let (3.., Ok(size)) = (corners.len(), u32::try_from(corners.len())) {
+            self.corners.extend_from_slice(corners);
+            self.sizes.push(size);
+        }
+    }
+
+    /// Whether there is none.
+    pub fn is_empty(&self) -> bool {
+        self.sizes.is_empty()
+    }
+
+    /// The corners of all faces, in their order.
+    pub fn corners(&self) -> &[u32] {
+        &self.corners
+    }
+
+    /// The same, to rename vertices.
+    pub fn corners_mut(&mut self) -> &mut [u32] {
+        &mut self.corners
+    }
+
+    /// The corners of each face.
+    pub fn iter(&self) -> impl Iterator<Item = &[u32]> {
+        let mut left = self.corners.as_slice();
+        self.sizes.iter().map(move |&size| {
+            let (face, rest) = left.split_at(size as usize);
+            left = rest;
+            face
+        })
+    }
+
+    /// Number of triangles that the faces are cut into.
+    pub fn triangle_count(&self) -> usize {
+        self.corners.len() - 2 * self.sizes.len()
     }
 }

@@ -1,6 +1,7 @@
 //! Lines of words of a text format, with their numbers, and numbers of words.
 
-use crate::mesh::error::MeshErrorKind;
+use crate::error::Error;
+use crate::mesh::read::soup::broken;
 use crate::mesh::repair::rounding::Digits;
 
 /// A line that has words: its 1-based number, and its text up to a comment.
@@ -19,26 +20,19 @@ impl<'a> Line<'a> {
     }
 
     /// A fault on this line.
-    pub fn fault(&self, what: impl Into<String>) -> MeshErrorKind {
-        MeshErrorKind::Syntax {
-            line: Some(self.number),
-            what: what.into(),
-        }
+    pub fn fault(&self, what: impl std::fmt::Display) -> Error {
+        broken(self.number, what)
     }
 
     /// A number, whatever it is; the caller says what it is for.
-    pub fn number<T: std::str::FromStr>(
-        &self,
-        word: Option<&str>,
-        what: &str,
-    ) -> Result<T, MeshErrorKind> {
+    pub fn number<T: std::str::FromStr>(&self, word: Option<&str>, what: &str) -> Result<T, Error> {
         let word =
             word.ok_or_else(|| self.fault(format!("the line ends where {what} is needed")))?;
         word.parse().map_err(|_| self.misplaced(word, what))
     }
 
     /// A word stands where something else is needed.
-    pub fn misplaced(&self, word: &str, what: &str) -> MeshErrorKind {
+    pub fn misplaced(&self, word: &str, what: &str) -> Error {
         self.fault(format!(
             "'{}' stands where {what} is needed",
             shortened(word)
@@ -50,7 +44,7 @@ impl<'a> Line<'a> {
         &self,
         words: &mut impl Iterator<Item = &'w str>,
         digits: &mut Digits,
-    ) -> Result<[f64; 3], MeshErrorKind> {
+    ) -> Result<[f64; 3], Error> {
         let mut point = [0.0; 3];
         for value in &mut point {
             let word = words.next();
@@ -129,14 +123,14 @@ impl<'a, L: Iterator<Item = Line<'a>>> Records<'a, L> {
     }
 
     /// Goes to the next record, of which `what` says what it is.
-    pub fn begin(&mut self, what: impl FnOnce() -> String) -> Result<(), MeshErrorKind> {
+    pub fn begin(&mut self, what: impl FnOnce() -> String) -> Result<(), Error> {
         if self.is_stream && self.words.clone().next().is_some() {
             return Ok(());
         }
-        self.line = self.lines.next().ok_or_else(|| MeshErrorKind::Syntax {
-            line: None,
-            what: format!("the file ends where {} is needed", what()),
-        })?;
+        self.line = self
+            .lines
+            .next()
+            .ok_or_else(|| broken(None, format!("the file ends where {} is needed", what())))?;
         self.words = self.line.words();
         Ok(())
     }
@@ -169,8 +163,8 @@ pub fn by_line_or_stream<'a, L, A, T>(
     lines: &L,
     by_line: A,
     attempts: &[A],
-    read: impl Fn(&mut Records<'a, L>, &A) -> Result<T, MeshErrorKind>,
-) -> Result<T, MeshErrorKind>
+    read: impl Fn(&mut Records<'a, L>, &A) -> Result<T, Error>,
+) -> Result<T, Error>
 where
     L: Iterator<Item = Line<'a>> + Clone,
 {

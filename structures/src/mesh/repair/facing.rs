@@ -8,44 +8,154 @@
 //! - where the surfaces about it leave the space empty faces outward, too: an island in a cavity;
 //! - where they fill it is the wall of a cavity if it faces inward. If it faces outward, it bounds nothing: the
 //!   solid is the union of both.
+//!
+//! A surface is within another if its bounding box is and all points that are looked at are: its outermost vertices
+//! and the middles of some of its triangles. A point on the other surface itself says nothing, so that bodies and
+//! cavities may touch the walls about them.
 
 use std::collections::HashMap;
+use std::sync::OnceLock;
 
-use crate::mesh::error::MeshErrorKind;
-use crate::mesh::repair::bounded_surface::{Part, Surface};
+use rayon::prelude::*;
+
+use crate::error::Error;
 use crate::mesh::repair::edges::Sets;
-use crate::mesh::repair::nesting::containers;
-use crate::mesh::triangle_mesh::Mesh;
+use crate::mesh::report::MeshReport;
+use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
+use crate::mesh::triangle_tree::{TriangleTree, centroid};
+use crate::mesh::winding::encloses;
+use crate::neighbours::box_tree::{LEAF, box_tree};
 use crate::neighbours::cell::{Cell, around, cell_of};
+use crate::vector::{add, cross, dot, norm, scale, subtract};
 
 /// Largest distance, about, between the borders of two pieces of one surface, as a share of the mesh's longest side.
 const SEAM: f64 = 1e-4;
 
-/// What was found of the surfaces, and done to them.
-#[derive(Default)]
-pub(in crate::mesh) struct Facing {
-    /// Parts that faced inward and were turned.
-    pub turned: usize,
-    /// Parts that lie within others and face outward, so that they bound nothing.
-    pub nested: usize,
-    /// Volume that the divergence theorem counts of these beyond once, in the file's unit cubed.
-    pub overlap: f64,
-    /// Triangles to drop: those of a surface that is there the other way round, too.
-    pub repeated: Vec<u32>,
-    /// Triangles to drop: those of surfaces without a thickness, outside the solid.
-    pub idle: Vec<u32>,
+/// A closed surface of less volume than this times its area to the power 3/2 has no inside.
+const FLAT: f64 = 1e-14;
+
+/// A set of triangles that hang together.
+pub(in crate::mesh) struct Part {
+    /// Its triangles, in rising order.
+    pub triangles: Vec<u32>,
+    /// Whether each edge is run through as often one way as the other.
+    pub is_closed: bool,
+    /// The part that this one repeats, one way round or the other.
+    pub again: Option<usize>,
+    /// The first part that is this one the other way round.
+    pub reverse: Option<usize>,
 }
 
-/// Turns surfaces that face inward, unless they are walls of cavities. `at_border` says of each triangle whether an
-/// edge of it is open or unbalanced.
+/// A surface, measured.
+struct Surface {
+    parts: usize,
+    triangles: Vec<u32>,
+    /// The same surface the other way round, if it is there both ways.
+    reverse: Option<Vec<u32>>,
+    is_closed: bool,
+    /// Six times its volume about the middle of its bounding box.
+    volume: f64,
+    area: f64,
+    /// Whether a triangle of it has an area.
+    has_area: bool,
+    low: [f64; 3],
+    high: [f64; 3],
+    /// Its outermost vertices either way along each axis.
+    outermost: Vec<[f64; 3]>,
+}
+
+impl Surface {
+    fn new(mesh: &Mesh, parts: &[Part], parts_of: &[usize]) -> Self {
+        let own = || parts_of.iter().map(|&part| &parts[part]);
+        let triangles: Vec<u32> = own()
+            .flat_map(|part| part.triangles.iter().copied())
+            .collect();
+        let reverse = own().find_map(|part| part.reverse);
+        let corners = || {
+            triangles
+                .iter()
+                .map(|&triangle| mesh.corners(mesh.triangles[triangle as usize]))
+        };
+        let outermost: Vec<[f64; 3]> = (0..6)
+            .filter_map(|side: usize| {
+                let along = |point: &[f64; 3]| {
+                    if side < 3 {
+                        point[side]
+                    } else {
+                        -point[side - 3]
+                    }
+                };
+                corners()
+                    .flatten()
+                    .max_by(|a, b| along(a).total_cmp(&along(b)))
+            })
+            .collect();
+        let end = |pick: fn(f64, f64) -> f64, start: f64| {
+            outermost.iter().fold([start; 3], |end, point| {
+                std::array::from_fn(|axis| pick(end[axis], point[axis]))
+            })
+        };
+        let (low, high) = (
+            end(f64::min, f64::INFINITY),
+            end(f64::max, f64::NEG_INFINITY),
+        );
+        let middle = scale(add(low, high), 0.5);
+        let volume = corners()
+            .map(|corners| {
+                let [a, b, c] = corners.map(|corner| subtract(corner, middle));
+                dot(a, cross(b, c))
+            })
+            .sum();
+        let has_area = triangles
+            .iter()
+            .any(|&triangle| !mesh.is_sliver(mesh.triangles[triangle as usize]));
+        let area = corners()
+            .map(|corners| 0.5 * norm(doubled_normal(corners)))
+            .sum();
+        Self {
+            parts: parts_of.len(),
+            is_closed: own().all(|part| part.is_closed),
+            reverse: reverse.map(|part| parts[part].triangles.clone()),
+            triangles,
+            volume,
+            area,
+            has_area,
+            low,
+            high,
+            outermost,
+        }
+    }
+
+    /// Whether it faces inward as the file has it.
+    fn is_inward(&self) -> bool {
+        self.volume < 0.0
+    }
+
+    /// Whether it is closed and all in one plane, or doubled onto itself.
+    fn is_flat(&self) -> bool {
+        self.is_closed && self.volume.abs() <= FLAT * self.area.powf(1.5)
+    }
+
+    /// Whether another's bounding box lies within this one's.
+    fn can_hold(&self, other: &Self) -> bool {
+        (0..3).all(|axis| self.low[axis] <= other.low[axis] && other.high[axis] <= self.high[axis])
+    }
+}
+
+/// Turns surfaces that face inward, unless they are walls of cavities, and counts them in the report.
+///
+/// `at_border` holds for each triangle whether an edge of it is open or unbalanced. The report's volume falls by the
+/// volume that nested surfaces count beyond once. Returns whether each triangle is to be dropped: those of surfaces
+/// that are there again, and those of surfaces without thickness outside the solid.
 ///
 /// # Errors
-/// Those of [`containers`].
+/// Too many surfaces within one another.
 pub(in crate::mesh) fn turn_outward(
     mesh: &mut Mesh,
     parts: &[Part],
     at_border: &[bool],
-) -> Result<Facing, MeshErrorKind> {
+    report: &mut MeshReport,
+) -> Result<Vec<bool>, Error> {
     let surfaces: Vec<Surface> = surfaces(mesh, parts, at_border)
         .into_iter()
         .map(|parts_of| Surface::new(mesh, parts, &parts_of))
@@ -53,7 +163,16 @@ pub(in crate::mesh) fn turn_outward(
     let containers = containers(mesh, &surfaces)?;
     let mut order: Vec<usize> = (0..surfaces.len()).collect();
     order.sort_by_key(|&index| containers[index].len());
-    let mut facing = Facing::default();
+    let mut repeated: Vec<u32> = Vec::new();
+    let mut idle: Vec<u32> = Vec::new();
+    // Of a part that is there again the first stays, and the first the other way round.
+    for (index, part) in parts.iter().enumerate() {
+        if let Some(first) = part.again
+            && parts[first].reverse != Some(index)
+        {
+            repeated.extend(&part.triangles);
+        }
+    }
     // +1 for surfaces that face outward in the end, -1 inward, 0 for those that bound nothing.
     let mut sides = vec![0i64; surfaces.len()];
     let mut turned = vec![false; surfaces.len()];
@@ -69,7 +188,7 @@ pub(in crate::mesh) fn turn_outward(
         let filled = about.iter().map(|&outer| sides[outer]).sum::<i64>();
         if surface.is_flat() {
             if filled <= 0 && surface.has_area {
-                facing.idle.extend(&surface.triangles);
+                idle.extend(&surface.triangles);
             }
             continue;
         }
@@ -83,12 +202,10 @@ pub(in crate::mesh) fn turn_outward(
             // Within a body that is there once, both sides are the walls of bodies that touch.
             Some(_) if filled > 0 && !within_both_ways => continue,
             Some(reverse) => {
-                facing
-                    .repeated
-                    .extend(if turn { &surface.triangles } else { reverse });
+                repeated.extend(if turn { &surface.triangles } else { reverse });
             }
             None if turn => {
-                facing.turned += surface.parts;
+                report.inverted_parts += surface.parts;
                 for &triangle in &surface.triangles {
                     mesh.triangles[triangle as usize].swap(1, 2);
                 }
@@ -98,15 +215,21 @@ pub(in crate::mesh) fn turn_outward(
         sides[index] = if inward { -1 } else { 1 };
         let closed = surface.is_closed && about.iter().all(|&outer| surfaces[outer].is_closed);
         if closed && filled > i64::from(inward) {
-            facing.nested += surface.parts;
-            facing.overlap += surface.volume.abs() / 6.0 * sides[index] as f64;
+            report.nested_parts += surface.parts;
+            report.volume -= surface.volume.abs() / 6.0 * sides[index] as f64;
         }
     }
     // What is left of a mesh that bounds nothing at all stays what it was.
-    if facing.idle.len() + facing.repeated.len() == mesh.triangles.len() {
-        facing.idle.clear();
+    if idle.len() + repeated.len() == mesh.triangles.len() {
+        idle.clear();
     }
-    Ok(facing)
+    report.repeated_triangles += repeated.len();
+    report.idle_triangles += idle.len();
+    let mut dropped = vec![false; mesh.triangles.len()];
+    for &triangle in repeated.iter().chain(&idle) {
+        dropped[triangle as usize] = true;
+    }
+    Ok(dropped)
 }
 
 /// The parts of each surface.
@@ -118,7 +241,7 @@ fn surfaces(mesh: &Mesh, parts: &[Part], at_border: &[bool]) -> Vec<Vec<usize>> 
     let mut joined = Sets::new(parts.len());
     let mut open = Vec::new();
     for (index, part) in parts.iter().enumerate() {
-        if part.is_reverse {
+        if part.again.is_some() {
             continue;
         }
         let border: Vec<u32> = part
@@ -128,8 +251,7 @@ fn surfaces(mesh: &Mesh, parts: &[Part], at_border: &[bool]) -> Vec<Vec<usize>> 
             .filter(|&triangle| at_border[triangle as usize])
             .collect();
         if border.is_empty() {
-            let reverse = parts.get(index + 1).is_some_and(|next| next.is_reverse);
-            surfaces.push((index..=index + usize::from(reverse)).collect());
+            surfaces.push(vec![index]);
             continue;
         }
         open.push(index);
@@ -159,4 +281,109 @@ fn surfaces(mesh: &Mesh, parts: &[Part], at_border: &[bool]) -> Vec<Vec<usize>> 
         surfaces[place].push(index);
     }
     surfaces
+}
+
+/// Middles of triangles that are looked at, about, beside the outermost vertices.
+const MIDDLES: usize = 8;
+
+/// Most pairs of surfaces of which one may lie within the other, by their boxes: 2,000 shells like an onion's, or any
+/// number of parts side by side in one.
+const MAX_PAIRS: usize = 2_000_000;
+
+/// The surfaces about each one, in rising order.
+///
+/// # Errors
+/// More than [`MAX_PAIRS`]: each takes a look at two surfaces.
+fn containers(mesh: &Mesh, surfaces: &[Surface]) -> Result<Vec<Vec<usize>>, Error> {
+    if surfaces.len() < 2 {
+        return Ok(vec![Vec::new(); surfaces.len()]);
+    }
+    // Lowest corners in a tree, each box with the highest corner of all boxes below.
+    let mut order: Vec<usize> = (0..surfaces.len()).collect();
+    let corner = |&index: &usize| (surfaces[index].low, index);
+    let highest = |own: &[usize]| {
+        own.iter().fold([f64::NEG_INFINITY; 3], |high, &index| {
+            std::array::from_fn(|axis| high[axis].max(surfaces[index].high[axis]))
+        })
+    };
+    let nodes = box_tree(&mut order, LEAF, corner, highest);
+    let (mut pairs, mut looked) = (0, 0);
+    let mut by_box = Vec::with_capacity(surfaces.len());
+    for (index, own) in surfaces.iter().enumerate() {
+        let mut about = Vec::new();
+        let mut waiting = vec![0];
+        while let Some(node) = waiting.pop() {
+            let here = &nodes[node];
+            looked += 1;
+            if (0..3)
+                .any(|axis| here.low[axis] > own.low[axis] || here.known[axis] < own.high[axis])
+            {
+                continue;
+            }
+            if here.second > 0 {
+                waiting.extend([node + 1, here.second]);
+                continue;
+            }
+            let others = order[here.first..here.first + here.count].iter().copied();
+            about.extend(others.filter(|&other| other != index && surfaces[other].can_hold(own)));
+        }
+        about.sort_unstable();
+        pairs += about.len();
+        if pairs > MAX_PAIRS || looked > 100 * MAX_PAIRS {
+            return Err(Error::input(format!(
+                "too many of its {} closed surfaces lie within one another to find which of them bound the solid",
+                surfaces.len()
+            ))
+            .help("leave out the inner surfaces, or sample the parts one by one"));
+        }
+        by_box.push(about);
+    }
+    let trees: Vec<OnceLock<TriangleTree>> = surfaces.iter().map(|_| OnceLock::new()).collect();
+    let containers = by_box
+        .into_par_iter()
+        .enumerate()
+        .map(|(index, mut about)| {
+            let own = &surfaces[index];
+            about.retain(|&other| {
+                let outer = trees[other].get_or_init(|| {
+                    let triangles = surfaces[other].triangles.iter();
+                    TriangleTree::of(
+                        triangles
+                            .map(|&t| mesh.triangles[t as usize])
+                            .filter(|&triangle| !mesh.is_sliver(triangle))
+                            .map(|triangle| mesh.corners(triangle))
+                            .collect(),
+                    )
+                });
+                let earlier = match (own.is_inward(), surfaces[other].is_inward()) {
+                    // Of two that coincide, the wall of a cavity is about what fills it.
+                    (false, true) => true,
+                    (true, false) => false,
+                    _ => other < index,
+                };
+                is_within(mesh, own, outer).unwrap_or(earlier)
+            });
+            about
+        })
+        .collect();
+    Ok(containers)
+}
+
+/// Whether a surface lies within another; none where it lies on it all over.
+fn is_within(mesh: &Mesh, inner: &Surface, outer: &TriangleTree) -> Option<bool> {
+    let middle = |&triangle: &u32| centroid(mesh.corners(mesh.triangles[triangle as usize]));
+    let count = inner.triangles.len();
+    let step = count.div_ceil(MIDDLES).max(1);
+    let some = inner.triangles.iter().step_by(step).map(middle);
+    let mut found = None;
+    for point in inner.outermost.iter().copied().chain(some) {
+        match encloses(outer, point) {
+            Some(false) => return Some(false),
+            within => found = found.or(within),
+        }
+    }
+    found.or_else(|| {
+        let mut all = inner.triangles.iter().map(middle);
+        all.find_map(|point| encloses(outer, point))
+    })
 }

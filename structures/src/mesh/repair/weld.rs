@@ -1,32 +1,25 @@
 //! Vertices at one place made one vertex, so that triangles share edges.
 //!
 //! 1. Vertices within [`WELD_TOLERANCE`] become one: copies with the same digits.
-//! 2. Seams that are left open are joined within the rounding of the file's numbers: [`seams`] and [`rounding`] have
-//!    the rules.
+//! 2. Seams that are left open are joined within the rounding of the file's numbers ([`rounding`]): programs that mesh
+//!    each face of a body by itself, or that move a part after meshing it, round the two copies of a vertex
+//!    differently. Only ends of open edges (of one face alone) are joined, so a closed mesh stays as it is, however
+//!    thin.
 //! 3. Only then are polygons cut into triangles, so that a vertex on both sides of a bridge between a rim and a hole is
 //!    one.
 
-use crate::mesh::error::MeshErrorKind;
-use crate::mesh::repair::faces::Faces;
+use crate::error::Error;
+use crate::mesh::read::soup::Faces;
 use crate::mesh::repair::rounding::Digits;
-use crate::mesh::repair::{polygon, rounding, seams};
+use crate::mesh::repair::{polygon, rounding};
+use crate::mesh::report::MeshReport;
+use crate::mesh::triangle_mesh::Mesh;
 use crate::neighbours::SpatialHash;
+use crate::vector::bounds;
 
 /// Largest distance of vertices that count as one, as a share of the longest edge of the bounding box. Files repeat a
 /// vertex with the same digits, so this needs to take up no more than the rounding of one conversion of units.
 pub const WELD_TOLERANCE: f64 = 1e-12;
-
-/// A mesh whose vertices are distinct.
-pub struct Welded {
-    /// One vertex a place, in order of first appearance; vertices that no triangle uses are gone.
-    pub positions: Vec<[f64; 3]>,
-    /// Triangles with three different corners, in the order given.
-    pub triangles: Vec<[u32; 3]>,
-    /// Vertices joined with others across seams, within the rounding.
-    pub seam_vertices: usize,
-    /// Largest distance of these along an axis, in the file's unit.
-    pub reach: f64,
-}
 
 /// Lengths below which squared areas are lost.
 const SMALLEST_EXTENT: f64 = 1e-60;
@@ -36,30 +29,28 @@ const NONE: u32 = u32::MAX;
 
 /// Merges vertices, cuts faces into triangles and drops those that have lost a corner.
 ///
-/// A vertex joins the earliest one within reach, so the outcome does not depend on anything but the order of the file.
+/// Vertices come in order of first appearance and triangles in the order given. A vertex joins the earliest one within
+/// reach, so the outcome depends on nothing but the order of the file.
 pub fn weld(
     positions: Vec<[f64; 3]>,
     mut faces: Faces,
     digits: &Digits,
-) -> Result<Welded, MeshErrorKind> {
+    report: &mut MeshReport,
+) -> Result<Mesh, Error> {
     let count = faces.triangle_count();
-    let mut low = [f64::INFINITY; 3];
-    let mut high = [f64::NEG_INFINITY; 3];
-    for &corner in faces.corners() {
-        let position = positions[corner as usize];
-        for axis in 0..3 {
-            low[axis] = low[axis].min(position[axis]);
-            high[axis] = high[axis].max(position[axis]);
-        }
-    }
+    let corners = faces.corners().iter();
+    let (low, high) = bounds(corners.map(|&corner| positions[corner as usize]));
     let extent = (0..3)
         .map(|axis| high[axis] - low[axis])
         .fold(0.0, f64::max);
     if extent == 0.0 {
-        return Err(MeshErrorKind::Degenerate { triangles: count });
+        return Err(degenerate(count));
     }
     if extent < SMALLEST_EXTENT {
-        return Err(MeshErrorKind::Tiny { extent });
+        return Err(Error::input(format!(
+            "the mesh is {extent:e} across; lengths below 1e-60 are not distinguished from zero"
+        ))
+        .help("export the mesh in a smaller unit of length"));
     }
     let mut places = Places::new(low, extent * WELD_TOLERANCE, positions.len());
     let mut names = vec![NONE; positions.len()];
@@ -74,14 +65,11 @@ pub fn weld(
     let kept = places.into_kept();
 
     let reach = rounding::reach(&kept, digits, extent);
-    let mut seam_vertices = 0;
     if reach > extent * WELD_TOLERANCE
-        && let Some(names) = seams::join(&kept, &faces, reach)
+        && let Some(names) = join_seams(&kept, &faces, reach)
     {
-        seam_vertices = (0..)
-            .zip(&names)
-            .filter(|&(own, &name)| own != name)
-            .count();
+        let joined = (0..).zip(&names).filter(|&(own, &name)| own != name);
+        (report.seam_vertices, report.weld_reach) = (joined.count(), reach);
         for corner in faces.corners_mut() {
             *corner = names[*corner as usize];
         }
@@ -95,14 +83,74 @@ pub fn weld(
     let positions = number_by_appearance(kept, &mut triangles);
     triangles.retain(|&[a, b, c]| a != b && b != c && c != a);
     if triangles.is_empty() {
-        return Err(MeshErrorKind::Degenerate { triangles: count });
+        return Err(degenerate(count));
     }
-    Ok(Welded {
+    report.degenerate_triangles = count - triangles.len();
+    Ok(Mesh {
         positions,
         triangles,
-        seam_vertices,
-        reach: if seam_vertices > 0 { reach } else { 0.0 },
+        closed: false,
     })
+}
+
+/// The refusal of a mesh of `triangles` of which none has an area.
+pub fn degenerate(triangles: usize) -> Error {
+    Error::input(format!(
+        "all {triangles} triangles are degenerate: none has an area"
+    ))
+    .help("check the unit of the export: too few digits may have merged the vertices")
+}
+
+/// Which vertex each becomes: an end of an open edge the earliest one within `reach` along each axis. None if nothing
+/// is joined.
+///
+/// A face no wider than the reach would vanish, so its corners stay: the surface there is finer than its numbers.
+fn join_seams(positions: &[[f64; 3]], faces: &Faces, reach: f64) -> Option<Vec<u32>> {
+    let mut sides: Vec<[u32; 2]> = Vec::with_capacity(faces.corners().len());
+    for face in faces.iter() {
+        let next = face.iter().cycle().skip(1);
+        let ends = face.iter().zip(next).filter(|(from, to)| from != to);
+        sides.extend(ends.map(|(&from, &to)| [from.min(to), from.max(to)]));
+    }
+    sides.sort_unstable();
+    let mut is_open = vec![false; positions.len()];
+    for group in sides.chunk_by(|a, b| a == b) {
+        if let [ends] = group {
+            ends.iter().for_each(|&end| is_open[end as usize] = true);
+        }
+    }
+    let are_near = |a: u32, b: u32| {
+        let (a, b) = (positions[a as usize], positions[b as usize]);
+        (0..3).all(|axis| (a[axis] - b[axis]).abs() <= reach)
+    };
+    for face in faces.iter() {
+        let mut others = face.iter().enumerate();
+        if others.all(|(place, &a)| face[..place].iter().all(|&b| are_near(a, b))) {
+            face.iter().for_each(|&end| is_open[end as usize] = false);
+        }
+    }
+    let open = || {
+        (0u32..)
+            .zip(&is_open)
+            .filter_map(|(vertex, &is_open)| is_open.then_some(vertex))
+    };
+    let (low, _) = bounds(open().map(|vertex| positions[vertex as usize]));
+    // Cells are twice the reach, so that mostly one is looked at.
+    let mut cells = SpatialHash::with_origin(low, 2.0 * reach, 0);
+    let mut names: Vec<u32> = (0..positions.len() as u32).collect();
+    let mut any = false;
+    for vertex in open() {
+        let position = positions[vertex as usize];
+        let near = cells.touching(position, reach).copied();
+        match near.filter(|&earlier| are_near(earlier, vertex)).min() {
+            Some(earliest) => {
+                names[vertex as usize] = earliest;
+                any = true;
+            }
+            None => cells.push(position, vertex),
+        }
+    }
+    any.then_some(names)
 }
 
 /// Numbers vertices in the order in which triangles name them, and leaves out the others.
@@ -141,7 +189,7 @@ impl Places {
     /// The vertex that stands for a position: the earliest within reach, else a new one.
     fn name(&mut self, position: [f64; 3]) -> u32 {
         let within = |other: &&u32| {
-            crate::mesh::vector::distance(self.kept[**other as usize], position) <= self.reach
+            crate::vector::distance(self.kept[**other as usize], position) <= self.reach
         };
         let earliest = self
             .cells
@@ -179,9 +227,86 @@ mod tests {
             faces.push(&triangle);
         }
         let positions = vec![a, b, c, [5.0; 3], almost_b, beyond, [-0.0; 3]];
-        let welded = weld(positions, faces, &Digits::default()).unwrap();
+        let mut report = MeshReport::default();
+        let welded = weld(positions, faces, &Digits::default(), &mut report).unwrap();
         assert_eq!(welded.positions, [a, b, c, beyond]);
         assert_eq!(welded.triangles, [[0, 1, 2], [0, 1, 2], [0, 3, 2]]);
-        assert_eq!(welded.seam_vertices, 0);
+        assert_eq!((report.seam_vertices, report.degenerate_triangles), (0, 1));
+    }
+
+    fn joined(positions: &[[f64; 3]], faces: &[&[u32]], reach: f64) -> Option<Vec<u32>> {
+        let mut all = Faces::default();
+        for face in faces {
+            all.push(face);
+        }
+        join_seams(positions, &all, reach)
+    }
+
+    /// Two triangles with an edge in common but for a unit; the second is the same turned over.
+    #[test]
+    fn edges_within_reach_become_one_whichever_way_they_run() {
+        let positions = [
+            [0., 0., 0.],
+            [10., 0., 0.],
+            [0., 10., 0.],
+            [10., 1., 0.],
+            [0., 10., 1.],
+            [9., 9., 0.],
+        ];
+        for second in [[3, 5, 4], [4, 5, 3]] {
+            let names = joined(&positions, &[&[0, 1, 2], &second], 1.0);
+            assert_eq!(names, Some(vec![0, 1, 2, 1, 2, 5]));
+        }
+        assert_eq!(joined(&positions, &[&[0, 1, 2], &[3, 5, 4]], 0.9), None);
+    }
+
+    /// Strips whose edges are one unit from each other: pairs become one, the whole row does not.
+    #[test]
+    fn no_chain_leads_beyond_the_reach() {
+        let mut positions = Vec::new();
+        let mut faces = Vec::new();
+        for row in 0..40u32 {
+            let x = f64::from(row);
+            positions.extend([[x, 0., 0.], [x, 99., 0.], [x, 50., 90.]]);
+            faces.push([3 * row, 3 * row + 1, 3 * row + 2]);
+        }
+        let faces: Vec<&[u32]> = faces.iter().map(|face| face.as_slice()).collect();
+        let names = joined(&positions, &faces, 1.0).unwrap();
+        for (vertex, &name) in names.iter().enumerate() {
+            assert!((positions[vertex][0] - positions[name as usize][0]).abs() <= 1.0);
+        }
+        assert_eq!(joined(&positions[..], &faces, 1e-3), None);
+        // Faces within the reach stay.
+        let crowd: Vec<[f64; 3]> = (0..900).map(|i| [f64::from(i), 0.0, 0.0]).collect();
+        let faces: Vec<[u32; 3]> = (0..300).map(|i| [3 * i, 3 * i + 1, 3 * i + 2]).collect();
+        let faces: Vec<&[u32]> = faces.iter().map(|face| face.as_slice()).collect();
+        assert_eq!(joined(&crowd, &faces, 850.0), None);
+    }
+
+    /// The tip of a cone whose copies differ: a hole of three edges within the reach.
+    #[test]
+    fn a_hole_no_wider_than_the_reach_is_closed() {
+        let positions = [
+            [0., 0., 9.],
+            [1., 0., 9.],
+            [0., 1., 9.],
+            [-50., -50., 0.],
+            [50., -50., 0.],
+            [0., 50., 0.],
+        ];
+        let faces: [&[u32]; 7] = [
+            &[3, 5, 4],
+            &[3, 4, 0],
+            &[4, 1, 0],
+            &[4, 5, 1],
+            &[5, 2, 1],
+            &[5, 3, 2],
+            &[3, 0, 2],
+        ];
+        assert_eq!(
+            joined(&positions, &faces, 1.0),
+            Some(vec![0, 0, 0, 3, 4, 5])
+        );
+        assert_eq!(joined(&positions, &faces, 0.5), None);
     }
 }

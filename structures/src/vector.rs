@@ -43,3 +43,15 @@ pub(crate) fn norm(a: [f64; 3]) -> f64 {
 pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     norm(subtract(a, b))
 }
+
+/// The smallest and the largest coordinate of points on each axis.
+pub(crate) fn bounds(points: impl IntoIterator<Item = [f64; 3]>) -> ([f64; 3], [f64; 3]) {
+    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+    for point in points {
+        for axis in 0..3 {
+            low[axis] = low[axis].min(point[axis]);
+            high[axis] = high[axis].max(point[axis]);
+        }
+    }
+    (low, high)
+}
