@@ -8,6 +8,7 @@
 use std::collections::HashMap;
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
 use nalgebra::Point3;
 
 use super::residues::Residues;
@@ -17,6 +18,14 @@ use crate::evaluate::residues::residue::Residue;
 pub(super) const CONTACT_DISTANCE: f64 = 5.0;
 /// Largest distance across the interface, in Å.
 pub(super) const INTERFACE_DISTANCE: f64 = 10.0;
+
+/// A native whose two sides do not touch.
+pub(super) fn no_contact() -> Error {
+    Error::input("the native's receptor and ligand have no heavy atoms within 5 Å of each other").help(
+        "check that the two are in one common frame and that the chains named are neighbours in the native; \
+         --native-receptor FILE:CHAINS and --native-ligand FILE:CHAINS choose them",
+    )
+}
 
 /// A pair of residues across the native's interface.
 #[derive(Clone, Copy, Debug, PartialEq)]

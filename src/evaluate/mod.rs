@@ -35,7 +35,6 @@ mod conformation;
 mod contacts;
 mod criterion;
 mod dockq;
-mod error;
 mod matching;
 mod native;
 mod report;
@@ -50,14 +49,14 @@ mod tests;
 use std::collections::{HashMap, HashSet};
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 use serde::Serialize;
 
 pub use chain_choice::ChainChoice;
-pub use conformation::{ConformationError, Superposed, superpose};
+pub use conformation::{Superposed, superpose};
 pub use criterion::Criterion;
 pub use dockq::{Capri, dockq};
-pub use error::EvaluateError;
 pub use native::Native;
 pub use report::{ChainMatch, MatchMethod, MatchReport, NativeComplex, SideMatch};
 pub use shared_chains::{SharedChains, shared_chains};
@@ -112,26 +111,22 @@ impl Evaluator {
     /// Matches the user's receptor and ligand, as docked, with the native.
     ///
     /// # Errors
-    /// [`EvaluateError`] when a molecule has no residues or no finite coordinates, or when the native has no
+    /// [`Error`] when a molecule has no residues or no finite coordinates, or when the native has no
     /// contacts. Also when too little of the native's interface or of a docked side is matched.
-    pub fn new(
-        receptor: &Molecule,
-        ligand: &Molecule,
-        native: Native,
-    ) -> Result<Self, EvaluateError> {
+    pub fn new(receptor: &Molecule, ligand: &Molecule, native: Native) -> Result<Self, Error> {
         Self::with_chains(receptor, ligand, native, &ChainChoice::default())
     }
 
     /// Matches as [`Self::new`], with native chains that the user chooses.
     ///
     /// # Errors
-    /// Those of [`Self::new`], and [`EvaluateError::UnknownChain`].
+    /// Those of [`Self::new`], and a choice of chains that are not there.
     pub fn with_chains(
         receptor: &Molecule,
         ligand: &Molecule,
         native: Native,
         choice: &ChainChoice,
-    ) -> Result<Self, EvaluateError> {
+    ) -> Result<Self, Error> {
         let receptor = Residues::of(receptor, "receptor")?;
         let ligand = Residues::of(ligand, "ligand")?;
         let found = native::ways(&receptor, &ligand, native, choice)?;
@@ -150,7 +145,7 @@ impl Evaluator {
             }
         }
         if arrangements.is_empty() {
-            return Err(first_error.unwrap_or(EvaluateError::Unmatched { side: "receptor" }));
+            return Err(first_error.unwrap_or_else(|| native::unmatched("receptor")));
         }
         let permutations = arrangements.len();
         for Arrangement { report, .. } in &mut arrangements {
@@ -225,9 +220,9 @@ fn arrange(
     way: &Way,
     groups: &Groups,
     across: &[AcrossPair],
-) -> Result<Arrangement, EvaluateError> {
+) -> Result<Arrangement, Error> {
     if !across.iter().any(|pair| pair.contact) {
-        return Err(EvaluateError::NoContact);
+        return Err(contacts::no_contact());
     }
     let receptor_pairs: Vec<_> = way.receptor.pairs().collect();
     let ligand_pairs: Vec<_> = way.ligand.pairs().collect();
@@ -295,26 +290,42 @@ fn side_matches(
 }
 
 /// Refuses a match of too few residues or atoms.
-fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), EvaluateError> {
+fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), Error> {
     let (receptor_atoms, ligand_atoms) = rmsds.atoms();
     let named = ["receptor", "ligand"].into_iter().zip(sides);
     for ((side, found), atoms) in named.zip([receptor_atoms, ligand_atoms]) {
         if found.interface_share() < MIN_INTERFACE_SHARE {
-            return Err(EvaluateError::Interface {
-                side,
-                matched: found.interface_matched,
-                interface: found.interface_residues,
-            });
+            return Err(Error::input(format!(
+                "only {} of the {} residues that the native's {side} has at the interface are matched in the {side} \
+                 that was docked; at least half are needed",
+                found.interface_matched, found.interface_residues
+            ))
+            .help(
+                "check that the native is of the same proteins and that receptor and ligand are not exchanged; name \
+                 the native's chains with --native-receptor FILE:CHAINS and --native-ligand FILE:CHAINS. Only \
+                 residues of the same name are matched",
+            ));
         }
         if atoms < MIN_ATOMS {
-            return Err(EvaluateError::Backbone { side, atoms });
+            return Err(Error::input(format!(
+                "only {atoms} backbone atoms of the {side} are matched with the native; at least 3 are needed"
+            ))
+            .help("give files with backbone atoms (N, CA, C and O) for all residues"));
         }
         check_docked_share(side, found.matched, found.residues)?;
     }
     // Each side may have half of the interface and yet no place of it be matched on both.
     let atoms = rmsds.interface_atoms();
     if atoms.contains(&0) || atoms.iter().sum::<usize>() < MIN_ATOMS {
-        return Err(EvaluateError::Across { atoms });
+        let [receptor, ligand] = atoms;
+        return Err(Error::input(format!(
+            "only {receptor} and {ligand} backbone atoms of receptor and ligand are matched on both sides of one \
+             place of the native's interface; some of each and 3 in all are needed"
+        ))
+        .help(
+            "give files with the residues of the interface and their backbone atoms (N, CA, C and O), and check that \
+             the native is of the same proteins",
+        ));
     }
     Ok(())
 }

@@ -2,13 +2,13 @@
 
 use std::collections::HashMap;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
-use super::EvaluateError;
 use super::chain_choice::ChainChoice;
 use super::report::NativeComplex;
 use super::residues::Residues;
-use crate::evaluate::matching::copies::{Combination, PlacedCopy, Uncombined, combinations};
+use crate::evaluate::matching::copies::{Combination, PlacedCopy, combinations};
 use crate::evaluate::matching::placement::Placement;
 use crate::evaluate::matching::placements::placements;
 
@@ -70,15 +70,14 @@ pub(super) struct Ways {
 /// The ways to see the docked sides in the native.
 ///
 /// # Errors
-/// [`EvaluateError::NoResidues`], [`EvaluateError::NotFinite`]; [`EvaluateError::UnknownChain`] for a choice of a chain
-/// that is not there; [`EvaluateError::Unmatched`] when no chain is the receptor's or none the ligand's; of a whole
-/// complex also [`EvaluateError::OneCopy`] and [`EvaluateError::NoContact`].
+/// [`Error`] for residues that cannot be read, for a choice of chains that are not there, and if no chain is the
+/// receptor's or none the ligand's; for a whole complex also if it has one copy of both or they do not touch.
 pub(super) fn ways(
     receptor: &Residues,
     ligand: &Residues,
     native: Native,
     choice: &ChainChoice,
-) -> Result<Ways, EvaluateError> {
+) -> Result<Ways, Error> {
     match native {
         Native::Pair {
             receptor: native_receptor,
@@ -102,7 +101,7 @@ fn of_pair(
     ligand: &Residues,
     groups: Groups,
     choice: &ChainChoice,
-) -> Result<Ways, EvaluateError> {
+) -> Result<Ways, Error> {
     choice.check([receptor, ligand], &[&groups.receptor, &groups.ligand])?;
     let on_receptor = placed(receptor, &groups.receptor, choice, "receptor")?;
     let on_ligand = placed(ligand, &groups.ligand, choice, "ligand")?;
@@ -140,7 +139,7 @@ fn of_complex(
     ligand: &Residues,
     complex: &Residues,
     choice: &ChainChoice,
-) -> Result<Ways, EvaluateError> {
+) -> Result<Ways, Error> {
     choice.check([receptor, ligand], &[complex])?;
     let on_receptor = placed(receptor, complex, choice, "receptor")?;
     let on_ligand = placed(ligand, complex, choice, "ligand")?;
@@ -148,10 +147,7 @@ fn of_complex(
         side(receptor, complex, &on_receptor),
         side(ligand, complex, &on_ligand),
     ];
-    let all = combinations(ours, theirs, true, choice.named).map_err(|reason| match reason {
-        Uncombined::OneCopy => EvaluateError::OneCopy,
-        Uncombined::NoContact => EvaluateError::NoContact,
-    })?;
+    let all = combinations(ours, theirs, true, choice.named)?;
     let mut found = Ways {
         complexes: complexes(ours, theirs, all.measured.iter().chain(&all.set_aside)),
         ..Ways::default()
@@ -199,12 +195,12 @@ fn placed(
     native: &Residues,
     choice: &ChainChoice,
     side: &'static str,
-) -> Result<Vec<Placement>, EvaluateError> {
+) -> Result<Vec<Placement>, Error> {
     let mut found = placements(user, native, choice);
     let best = found.iter().map(Placement::identity).fold(0.0, f64::max);
     found.retain(|placement| placement.identity() >= MIN_IDENTITY_OF_BEST * best);
     match found.iter().map(Placement::matched).max() {
-        None => Err(EvaluateError::Unmatched { side }),
+        None => Err(unmatched(side)),
         Some(matched) => {
             check_docked_share(side, matched, user.residues.len())?;
             Ok(found)
@@ -212,18 +208,30 @@ fn placed(
     }
 }
 
+/// A side that no chain of the native matches.
+pub(super) fn unmatched(side: &str) -> Error {
+    Error::input(format!("no chain of the native has the sequence of the {side}")).help(
+        "name the chains of the native that belong to each side with --native-receptor FILE:CHAINS and \
+         --native-ligand FILE:CHAINS, and check that they are the same proteins and that receptor and ligand are not \
+         exchanged",
+    )
+}
+
 /// Refuses a side of which too little is matched for the figures to mean anything: some residues are equal by chance.
 pub(super) fn check_docked_share(
     side: &'static str,
     matched: usize,
     residues: usize,
-) -> Result<(), EvaluateError> {
+) -> Result<(), Error> {
     if matched < ENOUGH_RESIDUES && (matched as f64) < MIN_DOCKED_SHARE * residues as f64 {
-        return Err(EvaluateError::DockedShare {
-            side,
-            matched,
-            residues,
-        });
+        return Err(Error::input(format!(
+            "only {matched} of the docked {side}'s {residues} residues are matched with the native; a quarter or 50 \
+             are needed"
+        ))
+        .help(
+            "check that the native's chain is that of the docked molecule and no fragment or other peptide. If the \
+             native has one domain of it, give --receptor and --ligand as docked, cut to that domain",
+        ));
     }
     Ok(())
 }

@@ -15,10 +15,8 @@ pub enum Needed {
     Share(f64),
 }
 
-/// A text that is neither a number of restraints nor a share of them.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a number of restraints such as 3, or a share of them such as 60% or 0.6")]
-pub struct NeededError;
+/// The forms of a text that says how many.
+const FORMS: &str = "a number of restraints such as 3, or a share of them such as 60% or 0.6";
 
 impl Needed {
     /// How many of `count` restraints that is: at least one of them where there are any. `None` where it is more than
@@ -40,19 +38,19 @@ impl Default for Needed {
 }
 
 impl FromStr for Needed {
-    type Err = NeededError;
+    type Err = &'static str;
 
-    fn from_str(text: &str) -> Result<Self, NeededError> {
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
         let share = |text: &str, whole: f64| {
             let share = text.trim().parse().map(|number: f64| number / whole);
             let share = share.ok().filter(|share| *share > 0.0 && *share <= 1.0);
-            share.map(Self::Share).ok_or(NeededError)
+            share.map(Self::Share).ok_or(FORMS)
         };
         match text.strip_suffix('%') {
             Some(percent) => share(percent, 100.0),
             None if text.contains('.') => share(text, 1.0),
             None => match text.trim().parse() {
-                Ok(0) | Err(_) => Err(NeededError),
+                Ok(0) | Err(_) => Err(FORMS),
                 Ok(count) => Ok(Self::Count(count)),
             },
         }
@@ -75,9 +73,9 @@ impl From<Needed> for String {
 }
 
 impl TryFrom<String> for Needed {
-    type Error = NeededError;
+    type Error = &'static str;
 
-    fn try_from(text: String) -> Result<Self, NeededError> {
+    fn try_from(text: String) -> Result<Self, Self::Error> {
         text.parse()
     }
 }
@@ -106,7 +104,7 @@ mod tests {
         for text in [
             "", "0", "0%", "0.0", "-1", "101%", "1.5", "nan", "all", "3 of 5", "inf%",
         ] {
-            assert_eq!(text.parse::<Needed>(), Err(NeededError), "{text}");
+            assert_eq!(text.parse::<Needed>(), Err(FORMS), "{text}");
         }
     }
 }

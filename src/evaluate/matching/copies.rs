@@ -7,9 +7,10 @@
 
 use std::collections::HashMap;
 
+use knotdock_structures::Error;
 use nalgebra::{Point3, Vector3};
 
-use crate::evaluate::contacts::contacts_between;
+use crate::evaluate::contacts::{CONTACT_DISTANCE, contacts_between, no_contact};
 use crate::evaluate::matching::chain_pair::ChainPair;
 use crate::evaluate::matching::placement::Placement;
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
@@ -74,25 +75,19 @@ pub(in crate::evaluate) struct Combinations {
     pub set_aside: Vec<Combination>,
 }
 
-/// Why nothing can be combined.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::evaluate) enum Uncombined {
-    /// Both sides only match the same chain.
-    OneCopy,
-    /// No two touch.
-    NoContact,
-}
-
 /// The combinations that count.
 ///
 /// `disjoint` where both sides are placed on one native, of which no residue can belong to both; `named` where the user
 /// names chains, so that no contact is too small.
+///
+/// # Errors
+/// [`Error`] if both sides only match the same chain, or no two touch.
 pub(in crate::evaluate) fn combinations(
     receptor: PlacedCopy,
     ligand: PlacedCopy,
     disjoint: bool,
     named: bool,
-) -> Result<Combinations, Uncombined> {
+) -> Result<Combinations, Error> {
     let mut counts = ContactCounts::new(receptor.native, ligand.native);
     let mut all = Vec::new();
     let mut any_disjoint = false;
@@ -122,11 +117,17 @@ pub(in crate::evaluate) fn combinations(
         }
     }
     if !any_disjoint {
-        return Err(Uncombined::OneCopy);
+        return Err(Error::input(
+            "receptor and ligand match the same chain of the native, which has only one copy of it",
+        )
+        .help(
+            "give a native with both copies: of a crystal, `knotdock inspect FILE --assembly 1 --write COMPLEX.pdb` \
+             builds the biological assembly",
+        ));
     }
     all.retain(|one| one.contacts > 0);
     if all.is_empty() {
-        return Err(Uncombined::NoContact);
+        return Err(no_contact());
     }
     let mut all = nearly_complete(receptor, ligand, all);
     // By what they are, not by their order in the file.
@@ -205,9 +206,7 @@ impl<'a> ContactCounts<'a> {
         let [receptors, ligands] = self.sides;
         let ((center, radius), (other, other_radius)) =
             (self.balls[0][receptor], self.balls[1][ligand]);
-        if nalgebra::distance(&center, &other)
-            > radius + other_radius + crate::evaluate::contacts::CONTACT_DISTANCE
-        {
+        if nalgebra::distance(&center, &other) > radius + other_radius + CONTACT_DISTANCE {
             return 0;
         }
         *self.known.entry((receptor, ligand)).or_insert_with(|| {

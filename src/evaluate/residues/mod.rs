@@ -8,9 +8,9 @@ pub(super) mod segments;
 
 use std::collections::HashMap;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{Atom, Molecule};
 
-use crate::evaluate::EvaluateError;
 use crate::evaluate::residues::residue::{LINKING_OXYGEN, PHOSPHATE_BOND, PHOSPHORUS, Residue};
 use crate::evaluate::residues::segments::{in_bonded_order, segments};
 
@@ -55,8 +55,8 @@ impl Residues {
     /// Cofactors, FMN and AMP among them, ions and glycans play no part, as in DockQ.
     ///
     /// # Errors
-    /// [`EvaluateError::NotFinite`] and [`EvaluateError::NoResidues`].
-    pub fn of(molecule: &Molecule, role: &'static str) -> Result<Self, EvaluateError> {
+    /// [`Error`] for coordinates that are not finite, and for a molecule without such residues.
+    pub fn of(molecule: &Molecule, role: &'static str) -> Result<Self, Error> {
         let mut chains: Vec<(&str, Vec<&Atom>)> = Vec::new();
         let mut places: HashMap<&str, usize> = HashMap::new();
         for atom in &molecule.atoms {
@@ -65,10 +65,11 @@ impl Residues {
                 .iter()
                 .all(|coordinate| coordinate.is_finite())
             {
-                return Err(EvaluateError::NotFinite {
-                    molecule: role,
-                    line: atom.line,
-                });
+                return Err(Error::input(format!(
+                    "the {role} has an atom (line {}) whose coordinates are not finite",
+                    atom.line
+                ))
+                .help("correct the coordinates in the file"));
             }
             if atom.element.eq_ignore_ascii_case("H") || atom.element.eq_ignore_ascii_case("D") {
                 continue;
@@ -85,7 +86,10 @@ impl Residues {
             all.add_chain(name, &atoms, &molecule.chain_breaks);
         }
         if all.residues.is_empty() {
-            return Err(EvaluateError::NoResidues { molecule: role });
+            return Err(Error::input(format!(
+                "the {role} has no residue of protein or nucleic acid"
+            ))
+            .help("name chains of protein or nucleic acid; waters, ions and cofactors are not compared"));
         }
         Ok(all)
     }
@@ -280,16 +284,16 @@ mod tests {
     fn hydrogens_and_nothing_at_all() {
         let mut hydrogen = atom("A", 1, "ALA", "H", [0.0; 3]);
         hydrogen.element = "H".into();
-        assert!(matches!(
-            Residues::of(&molecule(vec![hydrogen]), "native ligand"),
-            Err(EvaluateError::NoResidues {
-                molecule: "native ligand"
-            })
-        ));
+        let refused = |one, role| Residues::of(&molecule(vec![one]), role).unwrap_err();
+        let error = refused(hydrogen, "native ligand");
+        assert!(
+            error
+                .message()
+                .starts_with("the native ligand has no residue"),
+            "{error}"
+        );
         let lost = atom("A", 1, "ALA", "CA", [0.0, f64::NAN, 0.0]);
-        assert!(matches!(
-            Residues::of(&molecule(vec![lost]), "receptor"),
-            Err(EvaluateError::NotFinite { .. })
-        ));
+        let error = refused(lost, "receptor");
+        assert!(error.message().contains("not finite"), "{error}");
     }
 }
