@@ -5,8 +5,7 @@ use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
 use super::chain_choice::ChainChoice;
-use super::matching::placement::Placement;
-use super::matching::placements::placements;
+use super::matching::placements::{Placement, placements};
 use super::matching::superposition::MAX_FIT_RMSD;
 use super::residues::Residues;
 

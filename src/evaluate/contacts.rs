@@ -38,6 +38,13 @@ pub(super) struct AcrossPair {
     pub contact: bool,
 }
 
+impl AcrossPair {
+    /// Indices of the receptor's and of the ligand's residue.
+    pub fn residues(&self) -> [usize; 2] {
+        [self.receptor, self.ligand]
+    }
+}
+
 /// All pairs of residues nearer than 10 Å, ordered by receptor and then ligand residue.
 ///
 /// Cost: every pair of residues once, and every pair of atoms of those whose bounding balls come near.

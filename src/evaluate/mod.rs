@@ -33,10 +33,9 @@
 mod chain_choice;
 mod conformation;
 mod contacts;
-mod criterion;
-mod dockq;
 mod matching;
 mod native;
+mod quality;
 mod report;
 mod residues;
 mod rmsd;
@@ -51,19 +50,17 @@ use std::collections::{HashMap, HashSet};
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
-use serde::Serialize;
 
 pub use chain_choice::ChainChoice;
 pub use conformation::{Superposed, superpose};
-pub use criterion::Criterion;
-pub use dockq::{Capri, dockq};
 pub use native::Native;
+pub use quality::{Capri, Criterion, PoseQuality, dockq};
 pub use report::{ChainMatch, MatchMethod, MatchReport, NativeComplex, SideMatch};
 pub use shared_chains::{SharedChains, shared_chains};
 
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use contacts::{AcrossPair, NativeContacts, pairs_across};
-use native::{Groups, Way, check_docked_share};
+use native::{Way, check_docked_share};
 use residues::Residues;
 use rmsd::{RmsdForms, Rmsds, Side, ligand_is_smaller};
 
@@ -71,21 +68,6 @@ use rmsd::{RmsdForms, Rmsds, Side, ligand_is_smaller};
 const MIN_INTERFACE_SHARE: f64 = 0.5;
 /// Fewest backbone atoms that fix a superposition.
 const MIN_ATOMS: usize = 3;
-
-/// Quality of a pose against the native. All numbers are finite.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PoseQuality {
-    /// Interface RMSD, in Å.
-    pub irmsd: f64,
-    /// RMSD of the smaller side with the larger superposed, in Å.
-    pub lrmsd: f64,
-    /// Share of native contacts kept, 0 to 1.
-    pub fnat: f64,
-    /// DockQ, 0 to 1.
-    pub dockq: f64,
-    /// CAPRI class.
-    pub capri: Capri,
-}
 
 /// DockQ figures that differ by less are equal: rounding does not decide between assignments.
 const EQUAL_DOCKQ: f64 = 1e-9;
@@ -127,19 +109,21 @@ impl Evaluator {
         native: Native,
         choice: &ChainChoice,
     ) -> Result<Self, Error> {
-        let receptor = Residues::of(receptor, "receptor")?;
-        let ligand = Residues::of(ligand, "ligand")?;
-        let found = native::ways(&receptor, &ligand, native, choice)?;
+        let docked = [
+            Residues::of(receptor, "receptor")?,
+            Residues::of(ligand, "ligand")?,
+        ];
+        let found = native::ways([&docked[0], &docked[1]], native, choice)?;
         let across: Vec<Vec<AcrossPair>> = found
             .groups
             .iter()
-            .map(|groups| pairs_across(&groups.receptor.residues, &groups.ligand.residues))
+            .map(|[receptor, ligand]| pairs_across(&receptor.residues, &ligand.residues))
             .collect();
         let mut arrangements: Vec<Arrangement> = Vec::new();
         let mut first_error = None;
         for way in &found.ways {
             let (groups, across) = (&found.groups[way.groups], &across[way.groups]);
-            match arrange(&receptor, &ligand, way, groups, across) {
+            match arrange([&docked[0], &docked[1]], way, groups, across) {
                 Ok(arrangement) => arrangements.push(arrangement),
                 Err(error) => first_error = first_error.or(Some(error)),
             }
@@ -215,85 +199,65 @@ impl Arrangement {
 
 /// Prepares one way of matching; `across` are the groups' residue pairs.
 fn arrange(
-    receptor: &Residues,
-    ligand: &Residues,
+    docked: [&Residues; 2],
     way: &Way,
-    groups: &Groups,
+    groups: &[Residues; 2],
     across: &[AcrossPair],
 ) -> Result<Arrangement, Error> {
     if !across.iter().any(|pair| pair.contact) {
         return Err(contacts::no_contact());
     }
-    let receptor_pairs: Vec<_> = way.receptor.pairs().collect();
-    let ligand_pairs: Vec<_> = way.ligand.pairs().collect();
+    let pairs = way
+        .placements
+        .each_ref()
+        .map(|one| one.pairs().collect::<Vec<_>>());
     let rmsds = RmsdForms::new(
-        Side {
-            user: receptor,
-            native: &groups.receptor,
-            pairs: &receptor_pairs,
-        },
-        Side {
-            user: ligand,
-            native: &groups.ligand,
-            pairs: &ligand_pairs,
-        },
+        std::array::from_fn(|side| Side {
+            user: docked[side],
+            native: &groups[side],
+            pairs: &pairs[side],
+        }),
         across,
     );
-    let of_native = |pairs: &[(usize, usize)]| -> HashMap<usize, usize> {
-        pairs.iter().map(|&(user, native)| (native, user)).collect()
-    };
+    let [of_receptor, of_ligand] = pairs.map(|pairs| -> HashMap<usize, usize> {
+        pairs
+            .into_iter()
+            .map(|(user, native)| (native, user))
+            .collect()
+    });
+    let [receptor, ligand] = docked;
     let contacts = NativeContacts::new(
         across,
         &receptor.residues,
         &ligand.residues,
-        &of_native(&receptor_pairs),
-        &of_native(&ligand_pairs),
+        &of_receptor,
+        &of_ligand,
     );
-    let sides = side_matches([receptor, ligand], way, groups, across, &rmsds);
+    let backbone_rmsd = rmsds.of_the_parts();
+    let sides: [SideMatch; 2] = std::array::from_fn(|side| {
+        let near: HashSet<usize> = across.iter().map(|pair| pair.residues()[side]).collect();
+        let chains = &way.placements[side].chains;
+        SideMatch::new(
+            docked[side],
+            &groups[side],
+            chains,
+            &near,
+            backbone_rmsd[side],
+        )
+    });
     check_matched(&sides, &rmsds)?;
-    let (receptor_rmsd, ligand_rmsd) = rmsds.of_the_parts();
     Ok(Arrangement {
-        fits: receptor_rmsd.max(ligand_rmsd) <= MAX_FIT_RMSD,
+        fits: backbone_rmsd.iter().all(|rmsd| *rmsd <= MAX_FIT_RMSD),
         report: match_report(sides, groups, &contacts),
         rmsds,
         contacts,
     })
 }
 
-/// Report on the matching of receptor and ligand.
-fn side_matches(
-    [receptor, ligand]: [&Residues; 2],
-    way: &Way,
-    groups: &Groups,
-    across: &[AcrossPair],
-    rmsds: &RmsdForms,
-) -> [SideMatch; 2] {
-    let receptor_near: HashSet<_> = across.iter().map(|pair| pair.receptor).collect();
-    let ligand_near: HashSet<_> = across.iter().map(|pair| pair.ligand).collect();
-    let (receptor_rmsd, ligand_rmsd) = rmsds.of_the_parts();
-    [
-        SideMatch::new(
-            receptor,
-            &groups.receptor,
-            &way.receptor.chains,
-            &receptor_near,
-            receptor_rmsd,
-        ),
-        SideMatch::new(
-            ligand,
-            &groups.ligand,
-            &way.ligand.chains,
-            &ligand_near,
-            ligand_rmsd,
-        ),
-    ]
-}
-
 /// Refuses a match of too few residues or atoms.
 fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), Error> {
-    let (receptor_atoms, ligand_atoms) = rmsds.atoms();
     let named = ["receptor", "ligand"].into_iter().zip(sides);
-    for ((side, found), atoms) in named.zip([receptor_atoms, ligand_atoms]) {
+    for ((side, found), atoms) in named.zip(rmsds.atoms()) {
         if found.interface_share() < MIN_INTERFACE_SHARE {
             return Err(Error::input(format!(
                 "only {} of the {} residues that the native's {side} has at the interface are matched in the {side} \
@@ -333,7 +297,7 @@ fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), Error>
 /// The report of one way of matching.
 fn match_report(
     [receptor, ligand]: [SideMatch; 2],
-    groups: &Groups,
+    groups: &[Residues; 2],
     contacts: &NativeContacts,
 ) -> MatchReport {
     let kept = receptor.interface_matched + ligand.interface_matched;
@@ -342,7 +306,7 @@ fn match_report(
         interface_share: kept as f64 / interface.max(1) as f64,
         native_contacts: contacts.total(),
         native_contacts_matched: contacts.matched(),
-        dockq_ligand: if ligand_is_smaller(&groups.receptor, &groups.ligand) {
+        dockq_ligand: if ligand_is_smaller(&groups[0], &groups[1]) {
             "ligand"
         } else {
             "receptor"

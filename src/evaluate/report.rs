@@ -179,13 +179,6 @@ impl SideMatch {
             .collect();
         let all = || assignment.iter().flat_map(|chain| &chain.pairs);
         let matched = all().count();
-        let unmatched = |residues: &Residues, is_used: &dyn Fn(usize) -> bool| {
-            let segments = residues.segments.iter().enumerate();
-            segments
-                .filter(|&(index, _)| !is_used(index))
-                .map(|(_, segment)| segment.name.clone())
-                .collect()
-        };
         Self {
             residues: user.residues.len(),
             native_residues: native.residues.len(),
@@ -197,10 +190,9 @@ impl SideMatch {
             interface_matched: all().filter(|(_, j)| interface.contains(j)).count(),
             backbone_rmsd,
             chains,
-            unmatched_chains: unmatched(user, &|index| assignment.iter().any(|c| c.user == index)),
-            unmatched_native_chains: unmatched(native, &|index| {
-                assignment.iter().any(|c| c.native == index)
-            }),
+            unmatched_chains: user.unused(|index| assignment.iter().any(|c| c.user == index)),
+            unmatched_native_chains: native
+                .unused(|index| assignment.iter().any(|c| c.native == index)),
         }
     }
 

@@ -7,9 +7,8 @@ pub mod active_residues;
 pub mod antibody;
 pub mod flexible_regions;
 pub mod peptidase;
-mod peptidase_families;
+pub mod residue_roles;
 pub mod restrained;
-pub mod restraints;
 #[cfg(test)]
 mod test_chains;
 

@@ -66,13 +66,7 @@ impl ChainPair {
             .collect();
         let rises = pairs.windows(2).all(|pair| pair[0].1 < pair[1].1);
         let moved = |point: Point3<f64>| Point3::from(motion.apply(point.into()));
-        let any = rises
-            && settle(
-                &members(user, ours),
-                &members(native, theirs),
-                &mut pairs,
-                moved,
-            );
+        let any = rises && settle(&user.at(ours), &native.at(theirs), &mut pairs, moved);
         if any {
             self.pairs = pairs
                 .into_iter()
@@ -105,7 +99,7 @@ pub(in crate::evaluate) fn align_members(
     ours: (usize, &[usize]),
     theirs: (usize, &[usize]),
 ) -> ChainPair {
-    let found = align(&members(user, ours.1), &members(native, theirs.1));
+    let found = align(&user.at(ours.1), &native.at(theirs.1));
     ChainPair::of(ours, theirs, &found)
 }
 
@@ -121,7 +115,7 @@ pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<
             let (ours, theirs) = (&user.segments[u].members, &native.segments[n].members);
             let found = known
                 .entry((our_kind, their_kind))
-                .or_insert_with(|| align(&members(user, ours), &members(native, theirs)));
+                .or_insert_with(|| align(&user.at(ours), &native.at(theirs)));
             all.push(ChainPair::of((u, ours), (n, theirs), found));
         }
     }
@@ -133,10 +127,7 @@ type Kind<'a> = Vec<(&'a str, Number, Option<Step>)>;
 
 fn kinds(residues: &Residues) -> Vec<Kind<'_>> {
     let of_segment = |segment: &Segment| {
-        let members = segment
-            .members
-            .iter()
-            .map(|&member| &residues.residues[member]);
+        let members = residues.at(&segment.members).into_iter();
         let following = members.clone().skip(1).map(Some).chain([None]);
         let kinds = members.zip(following).map(|(residue, next)| {
             let step = next.map(|next| step(residue, next));
@@ -145,8 +136,4 @@ fn kinds(residues: &Residues) -> Vec<Kind<'_>> {
         kinds.collect()
     };
     residues.segments.iter().map(of_segment).collect()
-}
-
-fn members<'a>(residues: &'a Residues, members: &[usize]) -> Vec<&'a Residue> {
-    members.iter().map(|&i| &residues.residues[i]).collect()
 }

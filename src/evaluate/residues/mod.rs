@@ -94,6 +94,23 @@ impl Residues {
         Ok(all)
     }
 
+    /// The residues with these indices.
+    pub fn at(&self, members: &[usize]) -> Vec<&Residue> {
+        members
+            .iter()
+            .map(|&member| &self.residues[member])
+            .collect()
+    }
+
+    /// Names of the segments that are not used.
+    pub fn unused(&self, is_used: impl Fn(usize) -> bool) -> Vec<String> {
+        let segments = self.segments.iter().enumerate();
+        segments
+            .filter(|&(index, _)| !is_used(index))
+            .map(|(_, segment)| segment.name.clone())
+            .collect()
+    }
+
     /// Cuts one chain's atoms into residues and appends them as one or more segments; `ends` are the lines at which
     /// the file ends a chain.
     fn add_chain(&mut self, name: &str, atoms: &[&Atom], ends: &[usize]) {

@@ -9,7 +9,6 @@
 mod annealing;
 mod dead_ends;
 mod elimination;
-mod numbers;
 mod site_tables;
 #[cfg(test)]
 mod tests;
