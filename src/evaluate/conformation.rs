@@ -15,7 +15,7 @@ const MIN_SHARE: f64 = 0.5;
 /// the first.
 const ALIKE: f64 = 1.0;
 
-/// How a conformation lies on the first one.
+/// Superposition of a conformation on the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Superposed {
     /// From the frame of its file to that of the first one's.

@@ -128,7 +128,7 @@ impl ContactSide {
     }
 }
 
-/// The native's contacts as pairs of the user's residues.
+/// The native's contacts as pairs of docked residues.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NativeContacts {
     receptor: ContactSide,

@@ -2,7 +2,7 @@
 //!
 //! # Conventions
 //!
-//! - The user's receptor and ligand are the molecules as docked, each in its file's frame; the native may lie in any
+//! - The user's receptor and ligand are the molecules as docked, each in its file's frame; the native is in any
 //!   frame. A [`Pose`] takes a ligand atom x to R x + t in the receptor's frame. Lengths are in Å.
 //! - **Residues** are matched by number and insertion code where these agree, and by sequence otherwise. Only equal
 //!   residues are matched.
@@ -90,7 +90,7 @@ pub struct Evaluator {
 }
 
 impl Evaluator {
-    /// Matches the user's receptor and ligand, as docked, with the native.
+    /// Matches the docked receptor and ligand with the native.
     ///
     /// # Errors
     /// [`Error`] when a molecule has no residues or no finite coordinates, or when the native has no

@@ -1,4 +1,4 @@
-//! The native complex, as two groups of chains, and the ways in which the docked sides lie on it.
+//! The native complex, as two groups of chains, and the placements of the docked sides on it.
 
 use std::collections::HashMap;
 
@@ -26,7 +26,7 @@ pub enum Native<'a> {
     },
 }
 
-/// Least share of a docked side's residues that must be matched, unless so many are matched that chance has no part
+/// Least share of a docked side's residues that must be matched, unless [`ENOUGH_RESIDUES`] are: then chance has no part
 /// in it.
 const MIN_DOCKED_SHARE: f64 = 0.25;
 const ENOUGH_RESIDUES: usize = 50;
@@ -63,8 +63,8 @@ pub(super) struct Ways {
 /// The ways to see the docked sides in the native.
 ///
 /// # Errors
-/// [`Error`] for residues that cannot be read, for a choice of chains that are not there, and if no chain is the
-/// receptor's or none the ligand's; for a whole complex also if it has one copy of both or they do not touch.
+/// [`Error`] for residues that cannot be read, and for a choice of chains that are not there. Also if no chain is the
+/// receptor's or none the ligand's, and for a whole complex if it has one copy of both or they do not touch.
 pub(super) fn ways(
     docked: [&Residues; 2],
     native: Native,

@@ -29,7 +29,7 @@ pub(super) struct Side<'a> {
     pub user: &'a Residues,
     /// The native's.
     pub native: &'a Residues,
-    /// (index of the user's residue, index of the native's).
+    /// (index of the docked residue, index of the native's).
     pub pairs: &'a [(usize, usize)],
 }
 
@@ -94,7 +94,7 @@ impl RmsdForms {
         self.interface.each_ref().map(|side| side.count as usize)
     }
 
-    /// RMSD of the user's receptor and ligand, each superposed on the native's, in Å: no rigid docking can correct it.
+    /// RMSD of the docked receptor and ligand, each superposed on the native's, in Å: no rigid docking can correct it.
     pub fn of_the_parts(&self) -> [f64; 2] {
         self.whole.each_ref().map(|side| side.rmsd(&side.best))
     }

@@ -178,7 +178,7 @@ impl NearCells {
     }
 }
 
-/// An atom with what it may do.
+/// An atom with its part in hydrogen bonds and salt bridges.
 struct Site<'a> {
     residue: usize,
     atom: &'a Atom,
@@ -221,7 +221,7 @@ pub fn heavy_residues(molecule: &Molecule) -> Vec<Vec<usize>> {
     molecule.atoms_by_residue(&heavy)
 }
 
-/// What lies between one place and another.
+/// Vector from one place to another.
 fn from(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| other[axis] - one[axis])
 }

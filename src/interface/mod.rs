@@ -1,4 +1,4 @@
-//! The interface of a complex: which residues touch, what holds them together, and what the score says of it.
+//! The interface of a complex: which residues touch, their hydrogen bonds and salt bridges, and their score.
 //!
 //! # Conventions
 //!

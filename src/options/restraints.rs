@@ -11,7 +11,7 @@ use super::values::Range;
 use crate::options::membrane::MembraneChoice;
 use crate::plain_path::plain_path;
 use crate::predictions::PredictionSource;
-use crate::restraints::{Crosslink, Needed, RestraintFile, TblBounds};
+use crate::restraints::{Crosslink, RequiredCount, RestraintFile, TblBounds};
 
 /// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/research/effects.md,
 /// "Active sites").
@@ -51,7 +51,7 @@ options! {
         /// How many of the restraints a pose has to satisfy: a number, or a share such as 60%.
         ///
         /// Ask for fewer than all if some may be false.
-        restraints_need: Needed = Needed::default(), "COUNT|SHARE", Parsed;
+        restraints_need: RequiredCount = RequiredCount::default(), "COUNT|SHARE", Parsed;
         /// Upper bounds of a .tbl: widened for the hydrogens that they count, or as written.
         ///
         /// HADDOCK sums over hydrogens, which are dropped here. widened: 2 Å is 2.78 Å between heavy atoms. Selections

@@ -84,10 +84,6 @@ impl ActiveSite {
 pub struct PeptidasePrior;
 
 impl Prior for PeptidasePrior {
-    fn name(&self) -> &'static str {
-        "peptidase"
-    }
-
     fn sites(&self, molecule: &Molecule) -> Vec<Site> {
         let site = |site: ActiveSite| Site {
             role: SiteRole::Favoured,
@@ -205,7 +201,7 @@ fn together(found: &[Vec<Vec<CatalyticResidue>>]) -> Vec<Vec<CatalyticResidue>> 
     ways
 }
 
-/// The table; its head says what the columns hold and where they come from.
+/// The table; its head describes the columns and their sources.
 const TABLE: &str = include_str!("peptidase_families.csv");
 
 /// Amino acids allowed at each place of a segment; none stands for any.

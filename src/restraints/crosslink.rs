@@ -19,7 +19,7 @@ pub struct Crosslink {
     pub atom: &'static str,
     /// Largest distance of these atoms, in Å.
     pub upper: f64,
-    /// Where the bound is published.
+    /// Publication of the bound.
     pub source: &'static str,
 }
 

@@ -1,4 +1,4 @@
-//! Distance restraints: what experiments say of distances between receptor and ligand, read from a file.
+//! Distance restraints between receptor and ligand, from experiments, read from a file.
 //!
 //! # Conventions
 //!
@@ -11,11 +11,11 @@
 //! # Files
 //!
 //! - `.tbl`: assign statements of CNS, X-PLOR and HADDOCK ([`tbl`]).
-//! - Any other ending: a CSV table, a row a pair of residues or atoms ([`table`]). A preset of a cross-linking reagent
+//! - Any other ending: a CSV table, one row per pair of residues or atoms ([`table`]). A preset of a cross-linking reagent
 //!   ([`Crosslink`]) gives its rows their upper bound.
 
 pub mod crosslink;
-mod needed;
+mod required_count;
 mod restraint;
 mod side_atoms;
 pub mod table;
@@ -25,7 +25,7 @@ pub mod tbl;
 mod fuzz_tests;
 
 pub use self::crosslink::{CROSSLINKS, Crosslink};
-pub use self::needed::Needed;
+pub use self::required_count::RequiredCount;
 pub use self::restraint::{FileRestraints, NamedRestraint, TblBounds};
 
 use std::path::{Path, PathBuf};

@@ -1,4 +1,4 @@
-//! Tables of restraints: CSV, a row a pair of residues or atoms.
+//! Tables of restraints: CSV, one row per pair of residues or atoms.
 //!
 //! ```text
 //! receptor,ligand,lower,target,upper,group

@@ -87,7 +87,7 @@ fn away(position: [f64; 3], bonded: &[usize], positions: &[[f64; 3]]) -> Option<
     (length > 1e-6).then(|| arm.map(|x| x / length))
 }
 
-/// Heavy atoms by place: cells of `edge` (Å) with what belongs to each.
+/// Heavy atoms by place: cells of `edge` (Å) with an item for each atom.
 pub(super) fn cells<T>(atoms: impl Iterator<Item = ([f64; 3], T)>, edge: f64) -> CellList<T> {
     let members = atoms.map(|(position, item)| Member { position, item });
     CellList::new(members.collect(), edge)

@@ -165,7 +165,7 @@ pub fn column_name(name: &str) -> String {
     name.to_lowercase().replace(['-', ' '], "_")
 }
 
-/// The 1-based line on which a record begins, whose position is where the reader stood before it passed over empty
+/// The 1-based line on which a record begins, whose position is that of the reader before it passed over empty
 /// lines and, where a byte begins comments, over theirs.
 pub fn line_of(text: &[u8], position: &csv::Position, comment: Option<u8>) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);

@@ -1,4 +1,4 @@
-//! Alignments of every chain of the user's molecule with every chain of the native.
+//! Alignments of every chain of the docked molecule with every chain of the native.
 //!
 //! Sequences alone do not say which of several copies a chain is; that is for
 //! [`placements`](crate::evaluate::matching::placements).
@@ -9,22 +9,22 @@ use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
 use crate::evaluate::matching::alignment::{Alignment, align, settle};
-use crate::evaluate::residues::residue::{Number, Residue};
+use crate::evaluate::residues::residue::Number;
 use crate::evaluate::residues::segments::{Step, step};
 use crate::evaluate::residues::{Residues, Segment};
 
-/// Residues of one of the user's chains matched with those of one of the native's.
+/// Residues of a docked chain matched with those of a chain of the native.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::evaluate) struct ChainPair {
-    /// Index of the user's segment.
+    /// Index of the docked segment.
     pub user: usize,
     /// Index of the native's segment.
     pub native: usize,
-    /// Equal residues: (index of the user's, index of the native's).
+    /// Equal residues: (index of the docked residue, index of the native's).
     pub pairs: Vec<(usize, usize)>,
     /// Aligned places, equal or not.
     pub aligned: usize,
-    /// Number of residues that were there to align, of the user's and of the native's.
+    /// Number of residues to align, of the docked chain and of the native's.
     pub lengths: (usize, usize),
 }
 
@@ -92,7 +92,7 @@ impl ChainPair {
     }
 }
 
-/// Aligns some residues of one segment of the user's with some of the native's, each given with the segment's index.
+/// Aligns some residues of one docked segment with some of the native's, each given with the segment's index.
 pub(in crate::evaluate) fn align_members(
     user: &Residues,
     native: &Residues,
@@ -103,7 +103,7 @@ pub(in crate::evaluate) fn align_members(
     ChainPair::of(ours, theirs, &found)
 }
 
-/// Every segment of the user's molecule aligned with every one of the native's, rows by the user's.
+/// Every docked segment aligned with every one of the native's, rows by the docked one.
 ///
 /// Copies are aligned once: chains of the same residues and numbers have the same alignment.
 pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<ChainPair> {
@@ -122,7 +122,7 @@ pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<
     all
 }
 
-/// What the alignment of a chain depends on: each residue's name and number, and what follows it.
+/// Key of a chain's alignment: each residue's name and number, and the link to the next one.
 type Kind<'a> = Vec<(&'a str, Number, Option<Step>)>;
 
 fn kinds(residues: &Residues) -> Vec<Kind<'_>> {

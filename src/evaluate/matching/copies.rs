@@ -16,7 +16,7 @@ use crate::evaluate::matching::placements::Placement;
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use crate::evaluate::residues::Residues;
 
-/// Share of what the best combination matches, of either side, that another must match.
+/// Least matched residues of either side, as a share of those of the best combination.
 const MIN_OF_BEST: f64 = 0.8;
 /// Fewer residue contacts than this, and than this share of the largest interface's, are a crystal contact.
 const CRYSTAL_CONTACT: (usize, f64) = (10, 0.2);
@@ -37,7 +37,7 @@ impl Combination {
     }
 }
 
-/// One side: the user's molecule, the native's residues and the ways in which the first lies on the second.
+/// One side: the docked molecule, the native's residues and the placements of the first on the second.
 #[derive(Clone, Copy)]
 pub(in crate::evaluate) struct PlacedCopy<'a> {
     pub user: &'a Residues,

@@ -1,4 +1,4 @@
-//! The ways in which one docked side lies on the native: which of its chains is which copy, by superposition.
+//! Placements of one docked side on the native: which of its chains is which copy, by superposition.
 //!
 //! A docked side is rigid, so one pair of chains fixes where all others must be. Each likely pair in turn is
 //! superposed; then every other chain is given the native's chain that lies where it comes to stand, and what is left
@@ -28,18 +28,18 @@ const MIN_PAIRS: usize = 3;
 const DISTINCTIVE: usize = 20;
 /// Fewer are distinctive too, from the first number on, where the share of equal residues is at least the second.
 const DISTINCTIVE_PEPTIDE: (usize, f64) = (8, 0.9);
-/// What is left of two merged chains must have so many equal residues: fewer pair by chance.
+/// Fewest equal residues in the rest of two merged chains: fewer pair by chance.
 const MIN_OF_TWO_REMAINDERS: usize = 8;
-/// What is left of a chain is elsewhere only where it has this share of the pairs of the whole chain: else the other
-/// chain is a copy of what was matched already.
+/// The rest of a chain is elsewhere only if it has this share of the pairs of the whole chain: else the other
+/// chain is a copy of a matched one.
 const MIN_OF_WHOLE: f64 = 0.9;
-/// Farthest, in Å RMSD, that what is left of two chains may be from where the rest of the side has it.
+/// Largest RMSD in Å of the rest of two chains from their place in the rest of the side.
 const REACH_OF_REMAINDERS: f64 = 5.0;
 
-/// One way in which a side lies on the native.
+/// A placement: one way to superpose a docked side on the native.
 #[derive(Clone, Debug)]
 pub(in crate::evaluate) struct Placement {
-    /// Which residues are which, chain by chain. No residue stands in two.
+    /// Matched residues, chain by chain. No residue is in two.
     pub chains: Vec<ChainPair>,
     /// Takes the side from its own frame to the native's.
     pub motion: Pose,
@@ -48,7 +48,7 @@ pub(in crate::evaluate) struct Placement {
 }
 
 impl Placement {
-    /// All equal residues: (index of the user's, index of the native's).
+    /// All equal residues: (index of the docked residue, index of the native's).
     pub fn pairs(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         self.chains
             .iter()
@@ -89,7 +89,7 @@ impl Placement {
     }
 }
 
-/// The ways in which the user's side may lie on the native, by chains that the user's choice allows, the pair with most
+/// The placements of a docked side on the native, by chains that the user's choice allows, the pair with most
 /// residues first. Empty when no sequence matches.
 pub(in crate::evaluate) fn placements(
     user: &Residues,
@@ -155,7 +155,7 @@ struct Candidate {
     superposition: Superposition,
 }
 
-/// Farthest, in Å RMSD, that so many residues may be from where the rest of the side has them.
+/// Largest RMSD in Å of that many residues from their place in the rest of the side.
 fn reach(residues: usize) -> f64 {
     match residues {
         0..=3 => 3.0,
@@ -246,7 +246,7 @@ impl<'a> Builder<'a> {
         self.is_whole_user(pair.user) && self.is_whole_native(pair.native)
     }
 
-    /// Gives each whole chain the native's that lies where it comes to stand: many residues and a near fit first.
+    /// Gives each whole chain the native's chain in its place: many residues and a near fit first.
     fn add_whole_chains(&mut self) {
         loop {
             let best = self
@@ -268,7 +268,7 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// Matches what is left of merged chains with what lies there.
+    /// Matches the rest of merged chains with the native's residues in their place.
     fn add_remainders(&mut self) {
         loop {
             let mut best: Option<(f64, ChainPair)> = None;

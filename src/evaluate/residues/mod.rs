@@ -1,6 +1,6 @@
 //! A molecule as the evaluation sees it: residues of protein or nucleic acid, in file order, in segments.
 //!
-//! A **segment** is what is matched as one chain: the residues of one chain name, in file order, cut where several
+//! A **segment** is matched as one chain: the residues of one chain name, in file order, cut where several
 //! chains were written under one name ([`segments`](crate::evaluate::residues::segments)).
 
 pub(super) mod residue;

@@ -1,4 +1,4 @@
-//! Selections of atoms: what stands between the parentheses of an assign statement.
+//! Selections of atoms, between the parentheses of an assign statement.
 //!
 //! ```text
 //! selection = "(" any-of ")"
@@ -171,7 +171,7 @@ impl<'a> Selections<'a> {
         }
     }
 
-    /// What stands between parentheses, and the one that closes.
+    /// The expression between parentheses, and the one that closes.
     fn any_of(&mut self, depth: usize, open: Place) -> Result<Expression, Error> {
         if depth > MAX_DEPTH {
             return Err(open.fault(too_deep()));

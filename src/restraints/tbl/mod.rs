@@ -45,7 +45,7 @@ use crate::restraints::restraint::{
 };
 use crate::table_text::named_columns::shortened;
 
-/// What may stand behind the distances with a number, and says nothing of them.
+/// Keywords with a number after the distances, which have no effect on them.
 const PASSED_OVER: [&str; 6] = ["peak", "spectrum", "volume", "ppm1", "ppm2", "cv"];
 
 /// The restraints of a file. Lines end with LF.

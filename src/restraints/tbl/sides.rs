@@ -23,7 +23,7 @@ pub(super) struct Selected {
     pub(super) side: usize,
     /// Its atoms, rising.
     pub(super) atoms: Vec<usize>,
-    /// Whether HADDOCK would count hydrogens of theirs, too.
+    /// Whether HADDOCK would count hydrogens bonded to them, too.
     pub(super) has_hydrogens: bool,
 }
 
@@ -95,7 +95,7 @@ impl<'a> Sides<'a> {
         }
     }
 
-    /// The atoms of a side, with whether the selection holds hydrogens of theirs, in the file or not.
+    /// The atoms of a side, with whether the selection holds hydrogens bonded to them, in the file or not.
     fn selected(&self, side: usize, atoms: Vec<usize>, expression: &Expression) -> Selected {
         let carries = expression.select(&self.index, Tested::Hydrogens);
         let first = [0, self.index.receptor][side];

@@ -12,7 +12,7 @@ pub(super) enum Token<'a> {
     Colon,
     /// A keyword, a name or a number.
     Word(&'a str),
-    /// What stands between double quotes: wildcards in it are plain characters.
+    /// A word between double quotes: wildcards in it are plain characters.
     Quoted(&'a str),
 }
 
@@ -39,7 +39,7 @@ impl Token<'_> {
     }
 }
 
-/// Where a token begins.
+/// Place of a token in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     /// Byte of the text.
@@ -96,7 +96,7 @@ impl<'a> Tokens<'a> {
         self.text.get(from..to).unwrap_or_default()
     }
 
-    /// Where the last token ended.
+    /// End of the last token.
     pub(super) fn place(&self) -> Place {
         self.place
     }

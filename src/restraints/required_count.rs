@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 /// How many of several restraints have to be satisfied: a number of them, or a share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub enum Needed {
+pub enum RequiredCount {
     /// So many, at least one.
     Count(usize),
     /// A share above 0, up to 1 for all.
@@ -18,7 +18,7 @@ pub enum Needed {
 /// The forms of a text that says how many.
 const FORMS: &str = "a number of restraints such as 3, or a share of them such as 60% or 0.6";
 
-impl Needed {
+impl RequiredCount {
     /// How many of `count` restraints that is: at least one of them where there are any. `None` where it is more than
     /// there are.
     pub fn of(self, count: usize) -> Option<usize> {
@@ -31,13 +31,13 @@ impl Needed {
     }
 }
 
-impl Default for Needed {
+impl Default for RequiredCount {
     fn default() -> Self {
         Self::Share(1.0)
     }
 }
 
-impl FromStr for Needed {
+impl FromStr for RequiredCount {
     type Err = &'static str;
 
     fn from_str(text: &str) -> Result<Self, Self::Err> {
@@ -57,7 +57,7 @@ impl FromStr for Needed {
     }
 }
 
-impl fmt::Display for Needed {
+impl fmt::Display for RequiredCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Count(count) => count.fmt(f),
@@ -66,13 +66,13 @@ impl fmt::Display for Needed {
     }
 }
 
-impl From<Needed> for String {
-    fn from(needed: Needed) -> Self {
+impl From<RequiredCount> for String {
+    fn from(needed: RequiredCount) -> Self {
         needed.to_string()
     }
 }
 
-impl TryFrom<String> for Needed {
+impl TryFrom<String> for RequiredCount {
     type Error = &'static str;
 
     fn try_from(text: String) -> Result<Self, Self::Error> {
@@ -95,16 +95,16 @@ mod tests {
             ("0.001", Some(1), "0.1%"),
             ("6", None, "6"),
         ] {
-            let needed: Needed = text.parse().unwrap();
+            let needed: RequiredCount = text.parse().unwrap();
             assert_eq!(needed.of(5), of_five, "{text}");
             assert_eq!(needed.to_string(), written);
             assert_eq!(written.parse(), Ok(needed));
         }
-        assert_eq!(Needed::default().of(0), Some(0));
+        assert_eq!(RequiredCount::default().of(0), Some(0));
         for text in [
             "", "0", "0%", "0.0", "-1", "101%", "1.5", "nan", "all", "3 of 5", "inf%",
         ] {
-            assert_eq!(text.parse::<Needed>(), Err(FORMS), "{text}");
+            assert_eq!(text.parse::<RequiredCount>(), Err(FORMS), "{text}");
         }
     }
 }
