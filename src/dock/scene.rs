@@ -8,8 +8,8 @@ use crate::options::{DockOptions, SharpChoice};
 use crate::priors;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::flexible_regions::FlexibleRegions;
+use crate::priors::residue_roles::ResidueRoles;
 use crate::priors::restrained::Restrained;
-use crate::priors::restraints::Restraints;
 use crate::rank::rescoring::Rescoring;
 use knotdock_scoring::engine::{EngineOptions, Plan};
 use knotdock_scoring::kernel::Band;
@@ -105,15 +105,15 @@ impl Scene {
         let labels = molecules.map(|molecule| molecule.labels(options.terms.ph));
         let sites = molecules.map(priors::sites);
         let sites = sites.each_ref().map(Vec::as_slice);
-        let restraints = Restraints::new(molecules, sites, options)?;
-        let residues: usize = restraints.active.iter().map(Vec::len).sum();
+        let named = ResidueRoles::new(molecules, sites, options)?;
+        let residues: usize = named.active.iter().map(Vec::len).sum();
         let active_weight = options.terms.active_weight;
-        let [own, other] = &restraints.roles;
+        let [own, other] = &named.roles;
         let inputs = EffectInputs {
             labels: [0, 1].map(|side| label_counts(molecules[side], &labels[side].report)),
             contact_potential: options.terms.contact_potential.as_ref(),
             roles: [own, other],
-            roles_reason: &restraints.reason,
+            roles_reason: &named.reason,
             active_weight: PULL * active_weight / residues.max(1) as f64,
         };
         let decisions = effect_decisions::of_molecules(&inputs, options)?;
@@ -146,12 +146,11 @@ impl Scene {
         });
         let terms = terms.collect();
         // Residues that are named take the place of those that a prior names.
-        let active =
-            if restraints.active.iter().any(|side| !side.is_empty()) || !on(Effect::Contact) {
-                ActiveResidues::named(restraints.active, options)
-            } else {
-                ActiveResidues::assumed(sites, [own, other], options)
-            };
+        let active = if named.active.iter().any(|side| !side.is_empty()) || !on(Effect::Contact) {
+            ActiveResidues::named(named.active, options)
+        } else {
+            ActiveResidues::assumed(sites, [own, other], options)
+        };
         let polar =
             sharp_fits(options, on(Effect::Contact))?.then(|| molecules.map(Molecule::polar_atoms));
         // The weight of buried atoms is a matter of shape alone, so it comes after the terms.
@@ -330,7 +329,7 @@ fn label_counts(molecule: &Molecule, labels: &LabelReport) -> LabelCounts {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::priors::restraints::tests::peptide;
+    use crate::priors::residue_roles::tests::peptide;
     use knotdock_scoring::terms::effect::contact;
     use knotdock_scoring::terms::pose;
     use knotdock_structures::molecule::{CONTACT_TYPES, atom_kinds};

@@ -9,11 +9,12 @@ use std::path::PathBuf;
 
 use csv::StringRecord;
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
 
 use crate::ensemble::joined::{JoinedRow, MemberRow, join};
 use crate::output::tables::fields::number;
 use crate::output::tables::poses::{PoseRow, PoseTable};
-use crate::output::tables::poses_reader::PoseTableError;
+use crate::output::tables::poses_reader::{column_place, no_value};
 use crate::rank::cluster::RigidBody;
 
 /// Columns that name the conformations, receptor first.
@@ -73,13 +74,13 @@ impl JointTable {
 /// Joins the members' tables; poses cluster within `radius` (Å RMSD) of `body`, the first ligand.
 ///
 /// # Errors
-/// [`PoseTableError`] where a member's table lacks a column or holds what is no number.
+/// [`Error`] if a member's table lacks a column or holds what is no number.
 pub fn joint(
     members: &[DockedMember],
     body: &RigidBody,
     radius: f64,
     every_pose: bool,
-) -> Result<JointTable, PoseTableError> {
+) -> Result<JointTable, Error> {
     let mut rows = Vec::new();
     let mut places = Vec::new();
     for (index, member) in members.iter().enumerate() {
@@ -114,15 +115,9 @@ pub fn joint(
 }
 
 /// A member's rows in the frame of the first conformations.
-fn member_rows(member: &DockedMember) -> Result<Vec<MemberRow>, PoseTableError> {
+fn member_rows(member: &DockedMember) -> Result<Vec<MemberRow>, Error> {
     let table = &member.table;
-    let column = |name: &'static str| {
-        let place = table.header.iter().position(|column| column == name);
-        place.ok_or_else(|| PoseTableError::MissingColumn {
-            path: member.path.clone(),
-            column: name,
-        })
-    };
+    let column = |name: &str| column_place(&member.path, &table.header, name);
     let (score, pose_score, size) = (
         column("score")?,
         column("pose_score")?,
@@ -133,16 +128,10 @@ fn member_rows(member: &DockedMember) -> Result<Vec<MemberRow>, PoseTableError> 
     let back = ligand.inverse();
     let rows = table.records.iter().zip(&table.rows).zip(2..);
     rows.map(|((record, row), line)| {
-        let value = |place: usize, name: &'static str| {
+        let value = |place: usize, name: &str| {
             let field = record.get(place).unwrap_or_default();
             let value = field.parse::<f64>().ok().filter(|value| value.is_finite());
-            value.ok_or_else(|| PoseTableError::Field {
-                path: member.path.clone(),
-                line,
-                column: name,
-                field: field.to_owned(),
-                expected: "a finite number",
-            })
+            value.ok_or_else(|| no_value(&member.path, line, name, field, "a finite number"))
         };
         // Only poses that have a sharp fit have a score of one.
         let has_sharp = |place: &usize| record.get(*place).is_some_and(|field| !field.is_empty());

@@ -1,6 +1,7 @@
 //! The user's choice of chains: which chain of the native a docked chain is measured against.
 
-use super::EvaluateError;
+use knotdock_structures::Error;
+
 use super::residues::{Residues, Segment};
 
 /// The user's choice of chains. By default every assignment that the sequences allow is tried.
@@ -26,11 +27,7 @@ impl ChainChoice {
     }
 
     /// Refuses chains that are not there.
-    pub(super) fn check(
-        &self,
-        docked: [&Residues; 2],
-        natives: &[&Residues],
-    ) -> Result<(), EvaluateError> {
+    pub(super) fn check(&self, docked: [&Residues; 2], natives: &[&Residues]) -> Result<(), Error> {
         let known = |chain: &str, among: &[&Residues], molecule: &'static str| {
             let segments = || among.iter().flat_map(|one| &one.segments);
             if segments().any(|segment| segment.chain() == chain) {
@@ -38,11 +35,11 @@ impl ChainChoice {
             }
             let mut chains: Vec<String> = segments().map(|one| one.chain().to_owned()).collect();
             chains.dedup();
-            Err(EvaluateError::UnknownChain {
-                molecule,
-                chain: chain.to_owned(),
-                chains,
-            })
+            let chains = chains.join(", ");
+            Err(Error::input(format!(
+                "no chain {chain} is in the {molecule}, which has {chains}"
+            ))
+            .help("name chains of protein or nucleic acid as DOCKED:NATIVE, such as --map A:E,B:F"))
         };
         for (user, native) in &self.map {
             known(user, &docked, "docked molecules")?;

@@ -1,12 +1,11 @@
 //! Another conformation of a molecule laid on the first: an NMR model, a snapshot, a crystal with a partner bound.
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
-use super::EvaluateError;
 use super::chain_choice::ChainChoice;
-use super::matching::placement::Placement;
-use super::matching::placements::placements;
+use super::matching::placements::{Placement, placements};
 use super::matching::superposition::MAX_FIT_RMSD;
 use super::residues::Residues;
 
@@ -16,7 +15,7 @@ const MIN_SHARE: f64 = 0.5;
 /// the first.
 const ALIKE: f64 = 1.0;
 
-/// How a conformation lies on the first one.
+/// Superposition of a conformation on the first one.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Superposed {
     /// From the frame of its file to that of the first one's.
@@ -27,66 +26,23 @@ pub struct Superposed {
     pub matched: usize,
 }
 
-/// Why two molecules are no conformations of one.
-#[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum ConformationError {
-    /// One has no residues to compare, or no finite coordinates.
-    #[error(transparent)]
-    Residues(#[from] EvaluateError),
-    /// Too few residues are the same.
-    #[error(
-        "this is another molecule than the first of its side: {matched} of {residues} residues are the same, and half \
-         are needed"
-    )]
-    Another {
-        /// Residues that both have.
-        matched: usize,
-        /// Residues of the smaller one.
-        residues: usize,
-    },
-    /// The shapes differ by more than a change of conformation.
-    #[error(
-        "this does not fit on the first molecule of its side: the backbones lie {rmsd:.1} Å RMSD apart, and \
-         {MAX_FIT_RMSD:.0} Å is the most"
-    )]
-    Shape {
-        /// Backbone RMSD after superposing, in Å.
-        rmsd: f64,
-    },
-}
-
-impl ConformationError {
-    /// Remedy for the user.
-    pub fn remedy(&self) -> &'static str {
-        match self {
-            Self::Residues(error) => error.remedy(),
-            Self::Another { .. } | Self::Shape { .. } => {
-                "give conformations of one molecule, with the same chains (FILE:A,B picks them); dock other molecules \
-                 with `knotdock batch`"
-            }
-        }
-    }
-}
-
 /// Lays a conformation on the first one by their backbones. Residues are matched by chain, number and sequence, as
 /// with a known complex; where equal chains can be matched in several ways that fit alike, names of chains decide.
 ///
 /// # Errors
-/// [`ConformationError`].
-pub fn superpose(
-    conformation: &Molecule,
-    first: &Molecule,
-) -> Result<Superposed, ConformationError> {
+/// [`Error`] if a molecule has no residues to compare, less than half of the residues are the same, or the shapes differ
+/// by more than a change of conformation.
+pub fn superpose(conformation: &Molecule, first: &Molecule) -> Result<Superposed, Error> {
     let moved = Residues::of(conformation, "conformation")?;
     let fixed = Residues::of(first, "first conformation")?;
     let mut found = placements(&moved, &fixed, &ChainChoice::default());
     let most = found.iter().map(Placement::matched).max().unwrap_or(0);
     let residues = moved.residues.len().min(fixed.residues.len());
     if most == 0 || (most as f64) < MIN_SHARE * residues as f64 {
-        return Err(ConformationError::Another {
-            matched: most,
-            residues,
-        });
+        return Err(not_alike(format!(
+            "this is another molecule than the first of its side: {most} of {residues} residues are the same, and \
+             half are needed"
+        )));
     }
     found.retain(|placement| placement.matched() as f64 >= 0.9 * most as f64);
     let least = found.iter().map(|placement| placement.rmsd);
@@ -104,13 +60,25 @@ pub fn superpose(
     });
     let best = found.swap_remove(0);
     if best.rmsd > MAX_FIT_RMSD {
-        return Err(ConformationError::Shape { rmsd: best.rmsd });
+        return Err(not_alike(format!(
+            "this does not fit on the first molecule of its side: the backbones lie {:.1} Å RMSD apart, and \
+             {MAX_FIT_RMSD:.0} Å is the most",
+            best.rmsd
+        )));
     }
     Ok(Superposed {
         motion: best.motion,
         rmsd: best.rmsd,
         matched: best.matched(),
     })
+}
+
+/// Two molecules that are no conformations of one.
+fn not_alike(message: String) -> Error {
+    Error::input(message).help(
+        "give conformations of one molecule, with the same chains (FILE:A,B picks them); dock other molecules with \
+         `knotdock batch`",
+    )
 }
 
 #[cfg(test)]
@@ -149,9 +117,6 @@ mod tests {
         let one = chain_of("A", &random_sequence(1, 60), &numbers(1, 60));
         let other = chain_of("A", &random_sequence(2, 60), &numbers(1, 60));
         let refused = superpose(&molecule(other), &molecule(one)).unwrap_err();
-        assert!(
-            matches!(refused, ConformationError::Another { .. }),
-            "{refused}"
-        );
+        assert!(refused.message().contains("another molecule"), "{refused}");
     }
 }

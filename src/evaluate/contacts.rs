@@ -8,6 +8,7 @@
 use std::collections::HashMap;
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
 use nalgebra::Point3;
 
 use super::residues::Residues;
@@ -18,6 +19,14 @@ pub(super) const CONTACT_DISTANCE: f64 = 5.0;
 /// Largest distance across the interface, in Å.
 pub(super) const INTERFACE_DISTANCE: f64 = 10.0;
 
+/// A native whose two sides do not touch.
+pub(super) fn no_contact() -> Error {
+    Error::input("the native's receptor and ligand have no heavy atoms within 5 Å of each other").help(
+        "check that the two are in one common frame and that the chains named are neighbours in the native; \
+         --native-receptor FILE:CHAINS and --native-ligand FILE:CHAINS choose them",
+    )
+}
+
 /// A pair of residues across the native's interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AcrossPair {
@@ -27,6 +36,13 @@ pub(super) struct AcrossPair {
     pub ligand: usize,
     /// Whether they are in contact too.
     pub contact: bool,
+}
+
+impl AcrossPair {
+    /// Indices of the receptor's and of the ligand's residue.
+    pub fn residues(&self) -> [usize; 2] {
+        [self.receptor, self.ligand]
+    }
 }
 
 /// All pairs of residues nearer than 10 Å, ordered by receptor and then ligand residue.
@@ -112,7 +128,7 @@ impl ContactSide {
     }
 }
 
-/// The native's contacts as pairs of the user's residues.
+/// The native's contacts as pairs of docked residues.
 #[derive(Clone, Debug, Default)]
 pub(super) struct NativeContacts {
     receptor: ContactSide,

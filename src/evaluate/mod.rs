@@ -2,7 +2,7 @@
 //!
 //! # Conventions
 //!
-//! - The user's receptor and ligand are the molecules as docked, each in its file's frame; the native may lie in any
+//! - The user's receptor and ligand are the molecules as docked, each in its file's frame; the native is in any
 //!   frame. A [`Pose`] takes a ligand atom x to R x + t in the receptor's frame. Lengths are in Å.
 //! - **Residues** are matched by number and insertion code where these agree, and by sequence otherwise. Only equal
 //!   residues are matched.
@@ -33,11 +33,9 @@
 mod chain_choice;
 mod conformation;
 mod contacts;
-mod criterion;
-mod dockq;
-mod error;
 mod matching;
 mod native;
+mod quality;
 mod report;
 mod residues;
 mod rmsd;
@@ -50,21 +48,19 @@ mod tests;
 use std::collections::{HashMap, HashSet};
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
-use serde::Serialize;
 
 pub use chain_choice::ChainChoice;
-pub use conformation::{ConformationError, Superposed, superpose};
-pub use criterion::Criterion;
-pub use dockq::{Capri, dockq};
-pub use error::EvaluateError;
+pub use conformation::{Superposed, superpose};
 pub use native::Native;
+pub use quality::{Capri, Criterion, PoseQuality, dockq};
 pub use report::{ChainMatch, MatchMethod, MatchReport, NativeComplex, SideMatch};
 pub use shared_chains::{SharedChains, shared_chains};
 
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use contacts::{AcrossPair, NativeContacts, pairs_across};
-use native::{Groups, Way, check_docked_share};
+use native::{Way, check_docked_share};
 use residues::Residues;
 use rmsd::{RmsdForms, Rmsds, Side, ligand_is_smaller};
 
@@ -72,21 +68,6 @@ use rmsd::{RmsdForms, Rmsds, Side, ligand_is_smaller};
 const MIN_INTERFACE_SHARE: f64 = 0.5;
 /// Fewest backbone atoms that fix a superposition.
 const MIN_ATOMS: usize = 3;
-
-/// Quality of a pose against the native. All numbers are finite.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
-pub struct PoseQuality {
-    /// Interface RMSD, in Å.
-    pub irmsd: f64,
-    /// RMSD of the smaller side with the larger superposed, in Å.
-    pub lrmsd: f64,
-    /// Share of native contacts kept, 0 to 1.
-    pub fnat: f64,
-    /// DockQ, 0 to 1.
-    pub dockq: f64,
-    /// CAPRI class.
-    pub capri: Capri,
-}
 
 /// DockQ figures that differ by less are equal: rounding does not decide between assignments.
 const EQUAL_DOCKQ: f64 = 1e-9;
@@ -109,48 +90,46 @@ pub struct Evaluator {
 }
 
 impl Evaluator {
-    /// Matches the user's receptor and ligand, as docked, with the native.
+    /// Matches the docked receptor and ligand with the native.
     ///
     /// # Errors
-    /// [`EvaluateError`] when a molecule has no residues or no finite coordinates, or when the native has no
+    /// [`Error`] when a molecule has no residues or no finite coordinates, or when the native has no
     /// contacts. Also when too little of the native's interface or of a docked side is matched.
-    pub fn new(
-        receptor: &Molecule,
-        ligand: &Molecule,
-        native: Native,
-    ) -> Result<Self, EvaluateError> {
+    pub fn new(receptor: &Molecule, ligand: &Molecule, native: Native) -> Result<Self, Error> {
         Self::with_chains(receptor, ligand, native, &ChainChoice::default())
     }
 
     /// Matches as [`Self::new`], with native chains that the user chooses.
     ///
     /// # Errors
-    /// Those of [`Self::new`], and [`EvaluateError::UnknownChain`].
+    /// Those of [`Self::new`], and a choice of chains that are not there.
     pub fn with_chains(
         receptor: &Molecule,
         ligand: &Molecule,
         native: Native,
         choice: &ChainChoice,
-    ) -> Result<Self, EvaluateError> {
-        let receptor = Residues::of(receptor, "receptor")?;
-        let ligand = Residues::of(ligand, "ligand")?;
-        let found = native::ways(&receptor, &ligand, native, choice)?;
+    ) -> Result<Self, Error> {
+        let docked = [
+            Residues::of(receptor, "receptor")?,
+            Residues::of(ligand, "ligand")?,
+        ];
+        let found = native::ways([&docked[0], &docked[1]], native, choice)?;
         let across: Vec<Vec<AcrossPair>> = found
             .groups
             .iter()
-            .map(|groups| pairs_across(&groups.receptor.residues, &groups.ligand.residues))
+            .map(|[receptor, ligand]| pairs_across(&receptor.residues, &ligand.residues))
             .collect();
         let mut arrangements: Vec<Arrangement> = Vec::new();
         let mut first_error = None;
         for way in &found.ways {
             let (groups, across) = (&found.groups[way.groups], &across[way.groups]);
-            match arrange(&receptor, &ligand, way, groups, across) {
+            match arrange([&docked[0], &docked[1]], way, groups, across) {
                 Ok(arrangement) => arrangements.push(arrangement),
                 Err(error) => first_error = first_error.or(Some(error)),
             }
         }
         if arrangements.is_empty() {
-            return Err(first_error.unwrap_or(EvaluateError::Unmatched { side: "receptor" }));
+            return Err(first_error.unwrap_or_else(|| native::unmatched("receptor")));
         }
         let permutations = arrangements.len();
         for Arrangement { report, .. } in &mut arrangements {
@@ -220,101 +199,97 @@ impl Arrangement {
 
 /// Prepares one way of matching; `across` are the groups' residue pairs.
 fn arrange(
-    receptor: &Residues,
-    ligand: &Residues,
+    docked: [&Residues; 2],
     way: &Way,
-    groups: &Groups,
+    groups: &[Residues; 2],
     across: &[AcrossPair],
-) -> Result<Arrangement, EvaluateError> {
+) -> Result<Arrangement, Error> {
     if !across.iter().any(|pair| pair.contact) {
-        return Err(EvaluateError::NoContact);
+        return Err(contacts::no_contact());
     }
-    let receptor_pairs: Vec<_> = way.receptor.pairs().collect();
-    let ligand_pairs: Vec<_> = way.ligand.pairs().collect();
+    let pairs = way
+        .placements
+        .each_ref()
+        .map(|one| one.pairs().collect::<Vec<_>>());
     let rmsds = RmsdForms::new(
-        Side {
-            user: receptor,
-            native: &groups.receptor,
-            pairs: &receptor_pairs,
-        },
-        Side {
-            user: ligand,
-            native: &groups.ligand,
-            pairs: &ligand_pairs,
-        },
+        std::array::from_fn(|side| Side {
+            user: docked[side],
+            native: &groups[side],
+            pairs: &pairs[side],
+        }),
         across,
     );
-    let of_native = |pairs: &[(usize, usize)]| -> HashMap<usize, usize> {
-        pairs.iter().map(|&(user, native)| (native, user)).collect()
-    };
+    let [of_receptor, of_ligand] = pairs.map(|pairs| -> HashMap<usize, usize> {
+        pairs
+            .into_iter()
+            .map(|(user, native)| (native, user))
+            .collect()
+    });
+    let [receptor, ligand] = docked;
     let contacts = NativeContacts::new(
         across,
         &receptor.residues,
         &ligand.residues,
-        &of_native(&receptor_pairs),
-        &of_native(&ligand_pairs),
+        &of_receptor,
+        &of_ligand,
     );
-    let sides = side_matches([receptor, ligand], way, groups, across, &rmsds);
+    let backbone_rmsd = rmsds.of_the_parts();
+    let sides: [SideMatch; 2] = std::array::from_fn(|side| {
+        let near: HashSet<usize> = across.iter().map(|pair| pair.residues()[side]).collect();
+        let chains = &way.placements[side].chains;
+        SideMatch::new(
+            docked[side],
+            &groups[side],
+            chains,
+            &near,
+            backbone_rmsd[side],
+        )
+    });
     check_matched(&sides, &rmsds)?;
-    let (receptor_rmsd, ligand_rmsd) = rmsds.of_the_parts();
     Ok(Arrangement {
-        fits: receptor_rmsd.max(ligand_rmsd) <= MAX_FIT_RMSD,
+        fits: backbone_rmsd.iter().all(|rmsd| *rmsd <= MAX_FIT_RMSD),
         report: match_report(sides, groups, &contacts),
         rmsds,
         contacts,
     })
 }
 
-/// Report on the matching of receptor and ligand.
-fn side_matches(
-    [receptor, ligand]: [&Residues; 2],
-    way: &Way,
-    groups: &Groups,
-    across: &[AcrossPair],
-    rmsds: &RmsdForms,
-) -> [SideMatch; 2] {
-    let receptor_near: HashSet<_> = across.iter().map(|pair| pair.receptor).collect();
-    let ligand_near: HashSet<_> = across.iter().map(|pair| pair.ligand).collect();
-    let (receptor_rmsd, ligand_rmsd) = rmsds.of_the_parts();
-    [
-        SideMatch::new(
-            receptor,
-            &groups.receptor,
-            &way.receptor.chains,
-            &receptor_near,
-            receptor_rmsd,
-        ),
-        SideMatch::new(
-            ligand,
-            &groups.ligand,
-            &way.ligand.chains,
-            &ligand_near,
-            ligand_rmsd,
-        ),
-    ]
-}
-
 /// Refuses a match of too few residues or atoms.
-fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), EvaluateError> {
-    let (receptor_atoms, ligand_atoms) = rmsds.atoms();
+fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), Error> {
     let named = ["receptor", "ligand"].into_iter().zip(sides);
-    for ((side, found), atoms) in named.zip([receptor_atoms, ligand_atoms]) {
+    for ((side, found), atoms) in named.zip(rmsds.atoms()) {
         if found.interface_share() < MIN_INTERFACE_SHARE {
-            return Err(EvaluateError::Interface {
-                side,
-                matched: found.interface_matched,
-                interface: found.interface_residues,
-            });
+            return Err(Error::input(format!(
+                "only {} of the {} residues that the native's {side} has at the interface are matched in the {side} \
+                 that was docked; at least half are needed",
+                found.interface_matched, found.interface_residues
+            ))
+            .help(
+                "check that the native is of the same proteins and that receptor and ligand are not exchanged; name \
+                 the native's chains with --native-receptor FILE:CHAINS and --native-ligand FILE:CHAINS. Only \
+                 residues of the same name are matched",
+            ));
         }
         if atoms < MIN_ATOMS {
-            return Err(EvaluateError::Backbone { side, atoms });
+            return Err(Error::input(format!(
+                "only {atoms} backbone atoms of the {side} are matched with the native; at least 3 are needed"
+            ))
+            .help("give files with backbone atoms (N, CA, C and O) for all residues"));
         }
         check_docked_share(side, found.matched, found.residues)?;
     }
     // Each side may have half of the interface and yet no place of it be matched on both.
     let atoms = rmsds.interface_atoms();
     if atoms.contains(&0) || atoms.iter().sum::<usize>() < MIN_ATOMS {
-        return Err(EvaluateError::Across { atoms });
+        let [receptor, ligand] = atoms;
+        return Err(Error::input(format!(
+            "only {receptor} and {ligand} backbone atoms of receptor and ligand are matched on both sides of one \
+             place of the native's interface; some of each and 3 in all are needed"
+        ))
+        .help(
+            "give files with the residues of the interface and their backbone atoms (N, CA, C and O), and check that \
+             the native is of the same proteins",
+        ));
     }
     Ok(())
 }
@@ -322,7 +297,7 @@ fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), Evalua
 /// The report of one way of matching.
 fn match_report(
     [receptor, ligand]: [SideMatch; 2],
-    groups: &Groups,
+    groups: &[Residues; 2],
     contacts: &NativeContacts,
 ) -> MatchReport {
     let kept = receptor.interface_matched + ligand.interface_matched;
@@ -331,7 +306,7 @@ fn match_report(
         interface_share: kept as f64 / interface.max(1) as f64,
         native_contacts: contacts.total(),
         native_contacts_matched: contacts.matched(),
-        dockq_ligand: if ligand_is_smaller(&groups.receptor, &groups.ligand) {
+        dockq_ligand: if ligand_is_smaller(&groups[0], &groups[1]) {
             "ligand"
         } else {
             "receptor"

@@ -1,16 +1,15 @@
-//! The native complex, as two groups of chains, and the ways in which the docked sides lie on it.
+//! The native complex, as two groups of chains, and the placements of the docked sides on it.
 
 use std::collections::HashMap;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
-use super::EvaluateError;
 use super::chain_choice::ChainChoice;
 use super::report::NativeComplex;
 use super::residues::Residues;
-use crate::evaluate::matching::copies::{Combination, PlacedCopy, Uncombined, combinations};
-use crate::evaluate::matching::placement::Placement;
-use crate::evaluate::matching::placements::placements;
+use crate::evaluate::matching::copies::{Combination, PlacedCopy, combinations};
+use crate::evaluate::matching::placements::{Placement, placements};
 
 /// The known answer that poses are judged by.
 #[derive(Clone, Copy, Debug)]
@@ -27,7 +26,7 @@ pub enum Native<'a> {
     },
 }
 
-/// Least share of a docked side's residues that must be matched, unless so many are matched that chance has no part
+/// Least share of a docked side's residues that must be matched, unless [`ENOUGH_RESIDUES`] are: then chance has no part
 /// in it.
 const MIN_DOCKED_SHARE: f64 = 0.25;
 const ENOUGH_RESIDUES: usize = 50;
@@ -37,13 +36,6 @@ const MIN_IDENTITY_OF_BEST: f64 = 0.9;
 /// Most complexes that are listed.
 const MOST_LISTED: usize = 24;
 
-/// The native's two sides.
-#[derive(Clone, Debug)]
-pub(super) struct Groups {
-    pub receptor: Residues,
-    pub ligand: Residues,
-}
-
 /// Part of a complex: segments, each with the residues of it that belong to the part.
 type Part = Vec<(usize, Vec<usize>)>;
 
@@ -52,14 +44,15 @@ type Part = Vec<(usize, Vec<usize>)>;
 pub(super) struct Way {
     /// Index into [`Ways::groups`].
     pub groups: usize,
-    pub receptor: Placement,
-    pub ligand: Placement,
+    /// Placements of receptor and ligand.
+    pub placements: [Placement; 2],
 }
 
 /// Every way to see the docked sides in the native, those of most equal chain names first.
 #[derive(Clone, Debug, Default)]
 pub(super) struct Ways {
-    pub groups: Vec<Groups>,
+    /// The native's two sides, receptor first.
+    pub groups: Vec<[Residues; 2]>,
     pub ways: Vec<Way>,
     /// The complexes that the native holds, at most [`MOST_LISTED`], those that poses are measured by first.
     pub complexes: Vec<NativeComplex>,
@@ -70,53 +63,40 @@ pub(super) struct Ways {
 /// The ways to see the docked sides in the native.
 ///
 /// # Errors
-/// [`EvaluateError::NoResidues`], [`EvaluateError::NotFinite`]; [`EvaluateError::UnknownChain`] for a choice of a chain
-/// that is not there; [`EvaluateError::Unmatched`] when no chain is the receptor's or none the ligand's; of a whole
-/// complex also [`EvaluateError::OneCopy`] and [`EvaluateError::NoContact`].
+/// [`Error`] for residues that cannot be read, and for a choice of chains that are not there. Also if no chain is the
+/// receptor's or none the ligand's, and for a whole complex if it has one copy of both or they do not touch.
 pub(super) fn ways(
-    receptor: &Residues,
-    ligand: &Residues,
+    docked: [&Residues; 2],
     native: Native,
     choice: &ChainChoice,
-) -> Result<Ways, EvaluateError> {
+) -> Result<Ways, Error> {
     match native {
-        Native::Pair {
-            receptor: native_receptor,
-            ligand: native_ligand,
-        } => {
-            let groups = Groups {
-                receptor: Residues::of(native_receptor, "native receptor")?,
-                ligand: Residues::of(native_ligand, "native ligand")?,
-            };
-            of_pair(receptor, ligand, groups, choice)
+        Native::Pair { receptor, ligand } => {
+            let groups = [
+                Residues::of(receptor, "native receptor")?,
+                Residues::of(ligand, "native ligand")?,
+            ];
+            of_pair(docked, groups, choice)
         }
-        Native::Complex(complex) => {
-            let complex = Residues::of(complex, "native")?;
-            of_complex(receptor, ligand, &complex, choice)
-        }
+        Native::Complex(complex) => of_complex(docked, &Residues::of(complex, "native")?, choice),
     }
 }
 
 fn of_pair(
-    receptor: &Residues,
-    ligand: &Residues,
-    groups: Groups,
+    docked: [&Residues; 2],
+    groups: [Residues; 2],
     choice: &ChainChoice,
-) -> Result<Ways, EvaluateError> {
-    choice.check([receptor, ligand], &[&groups.receptor, &groups.ligand])?;
-    let on_receptor = placed(receptor, &groups.receptor, choice, "receptor")?;
-    let on_ligand = placed(ligand, &groups.ligand, choice, "ligand")?;
-    let [ours, theirs] = [
-        side(receptor, &groups.receptor, &on_receptor),
-        side(ligand, &groups.ligand, &on_ligand),
-    ];
+) -> Result<Ways, Error> {
+    let natives = [&groups[0], &groups[1]];
+    choice.check(docked, &natives)?;
+    let placements = all_placed(docked, natives, choice)?;
+    let copies = copies(docked, natives, &placements);
     // Chains that are not matched may touch all the same, and what is matched of the interface is judged by another.
-    let (measured, set_aside) = match combinations(ours, theirs, false, choice.named) {
+    let (measured, set_aside) = match combinations(copies, false, choice.named) {
         Ok(found) => (found.measured, found.set_aside),
         Err(_) => {
             let first = Combination {
-                receptor: 0,
-                ligand: 0,
+                placements: [0, 0],
                 contacts: 0,
             };
             (vec![first], Vec::new())
@@ -124,73 +104,76 @@ fn of_pair(
     };
     let ways = measured.iter().map(|one| Way {
         groups: 0,
-        receptor: on_receptor[one.receptor].clone(),
-        ligand: on_ligand[one.ligand].clone(),
+        placements: one.of(&placements).map(Placement::clone),
     });
     Ok(Ways {
         ways: ways.collect(),
-        complexes: complexes(ours, theirs, measured.iter().chain(&set_aside)),
+        complexes: complexes(copies, measured.iter().chain(&set_aside)),
         groups: vec![groups],
         unused: Vec::new(),
     })
 }
 
 fn of_complex(
-    receptor: &Residues,
-    ligand: &Residues,
+    docked: [&Residues; 2],
     complex: &Residues,
     choice: &ChainChoice,
-) -> Result<Ways, EvaluateError> {
-    choice.check([receptor, ligand], &[complex])?;
-    let on_receptor = placed(receptor, complex, choice, "receptor")?;
-    let on_ligand = placed(ligand, complex, choice, "ligand")?;
-    let [ours, theirs] = [
-        side(receptor, complex, &on_receptor),
-        side(ligand, complex, &on_ligand),
-    ];
-    let all = combinations(ours, theirs, true, choice.named).map_err(|reason| match reason {
-        Uncombined::OneCopy => EvaluateError::OneCopy,
-        Uncombined::NoContact => EvaluateError::NoContact,
-    })?;
+) -> Result<Ways, Error> {
+    choice.check(docked, &[complex])?;
+    let placements = all_placed(docked, [complex, complex], choice)?;
+    let copies = copies(docked, [complex, complex], &placements);
+    let all = combinations(copies, true, choice.named)?;
     let mut found = Ways {
-        complexes: complexes(ours, theirs, all.measured.iter().chain(&all.set_aside)),
+        complexes: complexes(copies, all.measured.iter().chain(&all.set_aside)),
         ..Ways::default()
     };
     let mut splits: Vec<[Part; 2]> = Vec::new();
     for one in all.measured {
-        let (r, l) = (&on_receptor[one.receptor], &on_ligand[one.ligand]);
-        let split = split(complex, r, l);
+        let sides = one.of(&placements);
+        let split = split(complex, sides);
         let groups = match splits.iter().position(|known| *known == split) {
             Some(groups) => groups,
             None => {
-                found.groups.push(Groups {
-                    receptor: complex.only(&split[0]),
-                    ligand: complex.only(&split[1]),
-                });
+                found
+                    .groups
+                    .push(split.each_ref().map(|part| complex.only(part)));
                 splits.push(split.clone());
                 splits.len() - 1
             }
         };
         found.ways.push(Way {
             groups,
-            receptor: in_group(r, &split[0]),
-            ligand: in_group(l, &split[1]),
+            placements: std::array::from_fn(|side| in_group(sides[side], &split[side])),
         });
     }
-    found.unused = unused(complex, &splits);
+    let parts = || splits.iter().flatten().flatten();
+    found.unused = complex.unused(|index| parts().any(|(segment, _)| *segment == index));
     Ok(found)
 }
 
-fn side<'a>(
-    user: &'a Residues,
-    native: &'a Residues,
-    placements: &'a [Placement],
-) -> PlacedCopy<'a> {
-    PlacedCopy {
-        user,
-        native,
-        placements,
-    }
+/// Receptor and ligand with the native's residues and the placements of each.
+fn copies<'a>(
+    docked: [&'a Residues; 2],
+    natives: [&'a Residues; 2],
+    placements: &'a [Vec<Placement>; 2],
+) -> [PlacedCopy<'a>; 2] {
+    std::array::from_fn(|side| PlacedCopy {
+        user: docked[side],
+        native: natives[side],
+        placements: &placements[side],
+    })
+}
+
+/// The placements of receptor and ligand.
+fn all_placed(
+    docked: [&Residues; 2],
+    natives: [&Residues; 2],
+    choice: &ChainChoice,
+) -> Result<[Vec<Placement>; 2], Error> {
+    Ok([
+        placed(docked[0], natives[0], choice, "receptor")?,
+        placed(docked[1], natives[1], choice, "ligand")?,
+    ])
 }
 
 /// The placements of one side whose sequences match, at least one that matches enough of it.
@@ -199,12 +182,12 @@ fn placed(
     native: &Residues,
     choice: &ChainChoice,
     side: &'static str,
-) -> Result<Vec<Placement>, EvaluateError> {
+) -> Result<Vec<Placement>, Error> {
     let mut found = placements(user, native, choice);
     let best = found.iter().map(Placement::identity).fold(0.0, f64::max);
     found.retain(|placement| placement.identity() >= MIN_IDENTITY_OF_BEST * best);
     match found.iter().map(Placement::matched).max() {
-        None => Err(EvaluateError::Unmatched { side }),
+        None => Err(unmatched(side)),
         Some(matched) => {
             check_docked_share(side, matched, user.residues.len())?;
             Ok(found)
@@ -212,40 +195,54 @@ fn placed(
     }
 }
 
+/// A side that no chain of the native matches.
+pub(super) fn unmatched(side: &str) -> Error {
+    Error::input(format!("no chain of the native has the sequence of the {side}")).help(
+        "name the chains of the native that belong to each side with --native-receptor FILE:CHAINS and \
+         --native-ligand FILE:CHAINS, and check that they are the same proteins and that receptor and ligand are not \
+         exchanged",
+    )
+}
+
 /// Refuses a side of which too little is matched for the figures to mean anything: some residues are equal by chance.
 pub(super) fn check_docked_share(
     side: &'static str,
     matched: usize,
     residues: usize,
-) -> Result<(), EvaluateError> {
+) -> Result<(), Error> {
     if matched < ENOUGH_RESIDUES && (matched as f64) < MIN_DOCKED_SHARE * residues as f64 {
-        return Err(EvaluateError::DockedShare {
-            side,
-            matched,
-            residues,
-        });
+        return Err(Error::input(format!(
+            "only {matched} of the docked {side}'s {residues} residues are matched with the native; a quarter or 50 \
+             are needed"
+        ))
+        .help(
+            "check that the native's chain is that of the docked molecule and no fragment or other peptide. If the \
+             native has one domain of it, give --receptor and --ligand as docked, cut to that domain",
+        ));
     }
     Ok(())
 }
 
 /// The complexes among the combinations, by the names of their chains, in the order given.
 fn complexes<'a>(
-    receptor: PlacedCopy,
-    ligand: PlacedCopy,
+    copies: [PlacedCopy; 2],
     all: impl Iterator<Item = &'a Combination>,
 ) -> Vec<NativeComplex> {
     let mut found: Vec<NativeComplex> = Vec::new();
     for one in all {
-        let names = |side: PlacedCopy, placement: usize| -> Vec<String> {
-            let segments = side.placements[placement].native_segments();
+        let [receptor, ligand] = [0, 1].map(|side| -> Vec<String> {
+            let PlacedCopy {
+                native, placements, ..
+            } = copies[side];
+            let segments = placements[one.placements[side]].native_segments();
             let names = segments
                 .into_iter()
-                .map(|segment| &side.native.segments[segment].name);
+                .map(|segment| &native.segments[segment].name);
             names.cloned().collect()
-        };
+        });
         let next = NativeComplex {
-            receptor: names(receptor, one.receptor),
-            ligand: names(ligand, one.ligand),
+            receptor,
+            ligand,
             contacts: one.contacts,
         };
         let is_known = |known: &NativeComplex| {
@@ -263,8 +260,7 @@ fn complexes<'a>(
 ///
 /// Both sides may match a part of one segment. Then each residue goes to the side whose nearest matched residue is
 /// nearer in the sequence.
-fn split(complex: &Residues, receptor: &Placement, ligand: &Placement) -> [Part; 2] {
-    let placements = [receptor, ligand];
+fn split(complex: &Residues, placements: [&Placement; 2]) -> [Part; 2] {
     let segments = placements.map(Placement::native_segments);
     let matched = placements.map(Placement::natives);
     [0, 1].map(|this| {
@@ -295,16 +291,6 @@ fn nearest(rising: &[usize], number: usize) -> usize {
     let around = [place.checked_sub(1), Some(place)].into_iter().flatten();
     let distances = around.filter_map(|place| rising.get(place).map(|one| one.abs_diff(number)));
     distances.min().unwrap_or(usize::MAX)
-}
-
-fn unused(complex: &Residues, splits: &[[Part; 2]]) -> Vec<String> {
-    let parts = || splits.iter().flatten().flatten();
-    let is_used = |index: usize| parts().any(|(segment, _)| *segment == index);
-    let segments = complex.segments.iter().enumerate();
-    segments
-        .filter(|&(index, _)| !is_used(index))
-        .map(|(_, segment)| segment.name.clone())
-        .collect()
 }
 
 /// A placement whose residues and segments of the native are those of a group, which holds the segments and members

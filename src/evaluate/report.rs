@@ -21,7 +21,7 @@ pub enum MatchMethod {
     Sequence,
 }
 
-/// A chain of the user's matched with one of the native's.
+/// A docked chain matched with one of the native's.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ChainMatch {
     /// Chain name in the user's file; `/2`, `/3` ... mark further runs of numbers under one name.
@@ -50,7 +50,7 @@ impl ChainMatch {
 /// The match of one side.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct SideMatch {
-    /// Residues of the user's molecule.
+    /// Residues of the docked molecule.
     pub residues: usize,
     /// Residues of the native's.
     pub native_residues: usize,
@@ -58,7 +58,7 @@ pub struct SideMatch {
     pub matched: usize,
     /// `matched` as a share, 0 to 1, of the native's residues.
     pub matched_share: f64,
-    /// `matched` as a share, 0 to 1, of the residues of the user's molecule.
+    /// `matched` as a share, 0 to 1, of the residues of the docked molecule.
     pub docked_share: f64,
     /// Matched residues whose number and insertion code agree; the others were matched by sequence.
     pub matched_by_number: usize,
@@ -66,13 +66,13 @@ pub struct SideMatch {
     pub interface_residues: usize,
     /// Those of them that are matched.
     pub interface_matched: usize,
-    /// Backbone RMSD in Å of the user's molecule superposed on the native's: what rigid docking cannot correct.
+    /// Backbone RMSD in Å of the docked molecule superposed on the native's, which rigid docking cannot correct.
     pub backbone_rmsd: f64,
     /// Chain by chain, the one with most matched residues first.
     pub chains: Vec<ChainMatch>,
-    /// Chains of the user's molecule that no chain of the native matches.
+    /// Docked chains that no chain of the native matches.
     pub unmatched_chains: Vec<String>,
-    /// Chains of the native that no chain of the user's molecule matches.
+    /// Chains of the native that no docked chain matches.
     pub unmatched_native_chains: Vec<String>,
 }
 
@@ -87,7 +87,7 @@ pub struct NativeComplex {
     pub contacts: usize,
 }
 
-/// The match of the user's molecules with the native.
+/// The match of the docked molecules with the native.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct MatchReport {
     /// The receptor's match.
@@ -179,13 +179,6 @@ impl SideMatch {
             .collect();
         let all = || assignment.iter().flat_map(|chain| &chain.pairs);
         let matched = all().count();
-        let unmatched = |residues: &Residues, is_used: &dyn Fn(usize) -> bool| {
-            let segments = residues.segments.iter().enumerate();
-            segments
-                .filter(|&(index, _)| !is_used(index))
-                .map(|(_, segment)| segment.name.clone())
-                .collect()
-        };
         Self {
             residues: user.residues.len(),
             native_residues: native.residues.len(),
@@ -197,10 +190,9 @@ impl SideMatch {
             interface_matched: all().filter(|(_, j)| interface.contains(j)).count(),
             backbone_rmsd,
             chains,
-            unmatched_chains: unmatched(user, &|index| assignment.iter().any(|c| c.user == index)),
-            unmatched_native_chains: unmatched(native, &|index| {
-                assignment.iter().any(|c| c.native == index)
-            }),
+            unmatched_chains: user.unused(|index| assignment.iter().any(|c| c.user == index)),
+            unmatched_native_chains: native
+                .unused(|index| assignment.iter().any(|c| c.native == index)),
         }
     }
 

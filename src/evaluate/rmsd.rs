@@ -29,7 +29,7 @@ pub(super) struct Side<'a> {
     pub user: &'a Residues,
     /// The native's.
     pub native: &'a Residues,
-    /// (index of the user's residue, index of the native's).
+    /// (index of the docked residue, index of the native's).
     pub pairs: &'a [(usize, usize)],
 }
 
@@ -56,67 +56,58 @@ pub(super) struct Rmsds {
 /// Data from which the RMSDs of any pose are computed.
 #[derive(Clone, Debug)]
 pub(super) struct RmsdForms {
-    receptor: Superposition,
-    ligand: Superposition,
-    receptor_interface: Superposition,
-    ligand_interface: Superposition,
+    /// All matched backbone atoms of receptor and ligand.
+    whole: [Superposition; 2],
+    /// Those of their interface residues.
+    interface: [Superposition; 2],
     ligand_is_smaller: bool,
 }
 
 impl RmsdForms {
-    /// Prepares for the two sides; `across` are the native's residue pairs within 10 Å.
+    /// Prepares receptor and ligand; `across` are the native's residue pairs within 10 Å.
     ///
     /// The interface is what DockQ 2.1.3 makes it: of the *matched* residues those within 10 Å of a matched one across.
-    pub fn new(receptor: Side, ligand: Side, across: &[AcrossPair]) -> Self {
-        let matched =
-            |side: Side| -> HashSet<usize> { side.pairs.iter().map(|pair| pair.1).collect() };
-        let (receptor_matched, ligand_matched) = (matched(receptor), matched(ligand));
-        let near: Vec<_> = across
-            .iter()
-            .filter(|pair| {
-                receptor_matched.contains(&pair.receptor) && ligand_matched.contains(&pair.ligand)
-            })
+    pub fn new(sides: [Side; 2], across: &[AcrossPair]) -> Self {
+        let matched: [HashSet<usize>; 2] =
+            sides.map(|side| side.pairs.iter().map(|pair| pair.1).collect());
+        let pairs = across.iter().map(AcrossPair::residues);
+        let near: Vec<[usize; 2]> = pairs
+            .filter(|pair| (0..2).all(|side| matched[side].contains(&pair[side])))
             .collect();
-        let receptor_near: HashSet<_> = near.iter().map(|pair| pair.receptor).collect();
-        let ligand_near: HashSet<_> = near.iter().map(|pair| pair.ligand).collect();
         Self {
-            receptor: receptor.superposition(|_| true),
-            ligand: ligand.superposition(|_| true),
-            receptor_interface: receptor.superposition(|native| receptor_near.contains(&native)),
-            ligand_interface: ligand.superposition(|native| ligand_near.contains(&native)),
-            ligand_is_smaller: ligand_is_smaller(receptor.native, ligand.native),
+            whole: sides.map(|side| side.superposition(|_| true)),
+            interface: std::array::from_fn(|side| {
+                let near: HashSet<usize> = near.iter().map(|pair| pair[side]).collect();
+                sides[side].superposition(|native| near.contains(&native))
+            }),
+            ligand_is_smaller: ligand_is_smaller(sides[0].native, sides[1].native),
         }
     }
 
     /// Numbers of backbone atoms matched: receptor, ligand.
-    pub fn atoms(&self) -> (usize, usize) {
-        (self.receptor.count as usize, self.ligand.count as usize)
+    pub fn atoms(&self) -> [usize; 2] {
+        self.whole.each_ref().map(|side| side.count as usize)
     }
 
     /// Numbers of backbone atoms that the interface RMSD is of: receptor, ligand.
     pub fn interface_atoms(&self) -> [usize; 2] {
-        [&self.receptor_interface, &self.ligand_interface].map(|side| side.count as usize)
+        self.interface.each_ref().map(|side| side.count as usize)
     }
 
-    /// Superposed RMSD of the user's receptor and ligand alone with the native's, in Å: what no rigid docking can
-    /// correct.
-    pub fn of_the_parts(&self) -> (f64, f64) {
-        (
-            self.receptor.rmsd(&self.receptor.best),
-            self.ligand.rmsd(&self.ligand.best),
-        )
+    /// RMSD of the docked receptor and ligand, each superposed on the native's, in Å: no rigid docking can correct it.
+    pub fn of_the_parts(&self) -> [f64; 2] {
+        self.whole.each_ref().map(|side| side.rmsd(&side.best))
     }
 
     /// The RMSDs with the ligand at `pose`.
     pub fn at(&self, pose: &Pose) -> Rmsds {
-        let (_, interface) = self
-            .receptor_interface
-            .superpose_with(&self.ligand_interface, pose);
+        let [receptor, ligand] = &self.whole;
+        let (_, interface) = self.interface[0].superpose_with(&self.interface[1], pose);
         let ligand = if self.ligand_is_smaller {
-            self.ligand.rmsd(&self.receptor.best.after(pose))
+            ligand.rmsd(&receptor.best.after(pose))
         } else {
             // Superposing the placed ligand means: back from the pose, then the ligand's own best fit.
-            self.receptor.rmsd(&self.ligand.best.after(&pose.inverse()))
+            receptor.rmsd(&ligand.best.after(&pose.inverse()))
         };
         Rmsds {
             interface: finite(interface),

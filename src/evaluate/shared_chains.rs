@@ -43,10 +43,10 @@ pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
     }
     let mut shared = Vec::new();
     for segment in wanted {
-        let own = members(&one, segment);
+        let own = one.at(&one.segments[segment].members);
         let mut best: Option<(usize, usize)> = None;
         for (index, &place) in free.iter().enumerate() {
-            let equal = equal_residues(&own, &members(&other, place));
+            let equal = equal_residues(&own, &other.at(&other.segments[place].members));
             if equal > best.map_or(0, |(equal, _)| equal) {
                 best = Some((equal, index));
             }
@@ -71,11 +71,6 @@ pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
         rest.clear();
     }
     Some(SharedChains { pairs, rest })
-}
-
-fn members(residues: &Residues, segment: usize) -> Vec<&Residue> {
-    let members = residues.segments[segment].members.iter();
-    members.map(|&member| &residues.residues[member]).collect()
 }
 
 /// Equal residues of two chains of one sequence, loops that one of them lacks aside; 0 of other chains.

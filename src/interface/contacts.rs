@@ -1,18 +1,19 @@
-//! Contacts between two molecules, of which one is moved by a pose.
+//! Contacts between two molecules, of which one is moved by a pose, and the residues that the best clusters touch.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::PolarAtom;
 use knotdock_structures::molecule::{Atom, Molecule};
 use knotdock_structures::neighbours::{CellList, Member};
+use serde::Serialize;
 use std::collections::BTreeMap;
 
 use super::{CLASH, CONTACT, HYDROGEN_BOND, ResidueName, SALT_BRIDGE};
 
-/// Two residues in contact.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Contact {
-    /// That of each side, by its place in [`ContactFinder::residues`].
-    pub residues: [usize; 2],
+/// Two residues in contact, by default given by their places in [`ContactFinder::residues`].
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+pub struct Contact<Residue = usize> {
+    /// That of each side.
+    pub residues: [Residue; 2],
     /// Distance of their nearest heavy atoms, in Å.
     pub distance: f64,
     /// Hydrogen bonds between them.
@@ -177,7 +178,7 @@ impl NearCells {
     }
 }
 
-/// An atom with what it may do.
+/// An atom with its part in hydrogen bonds and salt bridges.
 struct Site<'a> {
     residue: usize,
     atom: &'a Atom,
@@ -220,7 +221,7 @@ pub fn heavy_residues(molecule: &Molecule) -> Vec<Vec<usize>> {
     molecule.atoms_by_residue(&heavy)
 }
 
-/// What lies between one place and another.
+/// Vector from one place to another.
 fn from(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| other[axis] - one[axis])
 }
@@ -230,4 +231,51 @@ fn from(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
 fn faces(direction: [f64; 3], between: [f64; 3]) -> bool {
     let along: f64 = (0..3).map(|axis| direction[axis] * between[axis]).sum();
     direction == [0.0; 3] || along > 0.0
+}
+
+/// Clusters that are counted, the best ones.
+pub const CONSENSUS: usize = 50;
+
+/// A residue, and how many of the best clusters touch it.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ResidueShare {
+    /// The residue.
+    pub residue: ResidueName,
+    /// Clusters whose best pose has it in contact.
+    pub clusters: usize,
+    /// The same as a share of all that were counted.
+    pub share: f64,
+}
+
+/// The share of some clusters that touch each residue of either side. `clusters` are the contacts of the best pose of
+/// each. Residues are in the order of their files; those that no cluster touches are
+/// among them.
+pub fn residue_shares(finder: &ContactFinder, clusters: &[&[Contact]]) -> [Vec<ResidueShare>; 2] {
+    let sides = finder.residues();
+    let mut counts = sides.map(|residues| vec![0_usize; residues.len()]);
+    for contacts in clusters {
+        for (side, counts) in counts.iter_mut().enumerate() {
+            let mut touched: Vec<usize> = contacts
+                .iter()
+                .map(|contact| contact.residues[side])
+                .collect();
+            touched.sort_unstable();
+            touched.dedup();
+            for residue in touched {
+                counts[residue] += 1;
+            }
+        }
+    }
+    std::array::from_fn(|side| {
+        let residues = sides[side].iter().zip(&counts[side]);
+        let share = |(residue, &clusters_of): (&ResidueName, &usize)| ResidueShare {
+            residue: residue.clone(),
+            clusters: clusters_of,
+            share: match clusters.len() {
+                0 => 0.0,
+                all => clusters_of as f64 / all as f64,
+            },
+        };
+        residues.map(share).collect()
+    })
 }

@@ -1,4 +1,4 @@
-//! The interface of a complex: which residues touch, what holds them together, and what the score says of it.
+//! The interface of a complex: which residues touch, their hydrogen bonds and salt bridges, and their score.
 //!
 //! # Conventions
 //!
@@ -17,13 +17,13 @@
 mod complementarity;
 mod contacts;
 mod score;
-mod shares;
 mod surface_dots;
 
 pub use complementarity::shape_complementarity;
-pub use contacts::{Contact, ContactFinder, heavy_residues};
+pub use contacts::{
+    CONSENSUS, Contact, ContactFinder, ResidueShare, heavy_residues, residue_shares,
+};
 pub use score::{PlacedScore, score_in_place};
-pub use shares::{CONSENSUS, ResidueShare, residue_shares};
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{Atom, Molecule};
@@ -64,26 +64,11 @@ impl ResidueName {
     }
 }
 
-/// Two residues in contact.
-#[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct ResiduePair {
-    /// That of each side.
-    pub residues: [ResidueName; 2],
-    /// Distance of their nearest heavy atoms, in Å.
-    pub distance: f64,
-    /// Hydrogen bonds between them.
-    pub hydrogen_bonds: usize,
-    /// Distance of donor and acceptor of the shortest of these, in Å.
-    pub hydrogen_bond_distance: Option<f64>,
-    /// Whether they make a salt bridge.
-    pub salt_bridge: bool,
-}
-
 /// The interface of a complex.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Interface {
     /// Residues in contact, in the order of side 0, then of side 1.
-    pub pairs: Vec<ResiduePair>,
+    pub pairs: Vec<Contact<ResidueName>>,
     /// Residues of each side that have a contact.
     pub residues: [usize; 2],
     /// Hydrogen bonds.
@@ -106,7 +91,7 @@ impl Interface {
             let residues = contacts.iter().map(|contact| contact.residues[side]);
             residues.collect::<BTreeSet<usize>>().len()
         };
-        let pair = |contact: &Contact| ResiduePair {
+        let pair = |contact: &Contact| Contact {
             residues: [
                 first_names[contact.residues[0]].clone(),
                 second_names[contact.residues[1]].clone(),

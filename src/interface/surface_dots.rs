@@ -14,7 +14,7 @@ const SLACK: f64 = 1e-7;
 /// A point of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct SurfaceDot {
-    /// Where it is.
+    /// Position, in Å.
     pub at: Vector3<f64>,
     /// Away from the molecule, of length 1; the probe that touches here lies along it.
     pub normal: Vector3<f64>,

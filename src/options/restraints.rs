@@ -11,7 +11,7 @@ use super::values::Range;
 use crate::options::membrane::MembraneChoice;
 use crate::plain_path::plain_path;
 use crate::predictions::PredictionSource;
-use crate::restraints::{Crosslink, Needed, RestraintFile, TblBounds};
+use crate::restraints::{Crosslink, RequiredCount, RestraintFile, TblBounds};
 
 /// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/research/effects.md,
 /// "Active sites").
@@ -47,11 +47,11 @@ options! {
         ///
         /// The columns of the table are receptor, ligand, lower, target, upper and group. Residues are written as A:57,
         /// atoms as A:57.CA. Poses that cannot satisfy the distances are not searched.
-        restraints: Option<RestraintFile> = None, "FILE", Optional(Content(restraint_file));
+        restraints: Option<RestraintFile> = None, "FILE", Optional(Content(RestraintFile::read));
         /// How many of the restraints a pose has to satisfy: a number, or a share such as 60%.
         ///
         /// Ask for fewer than all if some may be false.
-        restraints_need: Needed = Needed::default(), "COUNT|SHARE", Parsed;
+        restraints_need: RequiredCount = RequiredCount::default(), "COUNT|SHARE", Parsed;
         /// Upper bounds of a .tbl: widened for the hydrogens that they count, or as written.
         ///
         /// HADDOCK sums over hydrogens, which are dropped here. widened: 2 Å is 2.78 Å between heavy atoms. Selections
@@ -85,7 +85,7 @@ options! {
 }
 
 impl RestraintOptions {
-    /// Whether residues are named that are to stay free of contact, or to be in contact.
+    /// Whether residues are named that have a role: blocked or active.
     pub(crate) fn names_residues(&self) -> bool {
         let named = [
             &self.block_receptor,
@@ -97,18 +97,13 @@ impl RestraintOptions {
     }
 }
 
-/// The restraints of a file.
-fn restraint_file(path: &Path) -> Result<RestraintFile, Error> {
-    Ok(RestraintFile::read(path)?)
-}
-
 /// Predictions of an interface: a table, or the B values of the molecule's file.
 struct Predictions;
 
 impl Rule<PredictionSource> for Predictions {
     fn read(&self, text: &str, folder: &Path) -> Result<PredictionSource, Error> {
         let path = plain_path(&folder.join(text));
-        Ok(PredictionSource::read(&path.to_string_lossy())?)
+        PredictionSource::read(&path.to_string_lossy())
     }
 
     fn text(&self, source: &PredictionSource) -> Option<String> {

@@ -76,7 +76,7 @@ mod tests {
     use crate::options::DockOptions;
     use crate::pose_space::PoseSpace;
     use crate::pose_space::refine::RefinedPose;
-    use crate::priors::restraints::tests::peptide;
+    use crate::priors::residue_roles::tests::peptide;
     use crate::progress::NoProgress;
     use crate::search::scan::scan;
     use crate::search::scan_engine::ScanEngine;

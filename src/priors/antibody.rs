@@ -1,7 +1,7 @@
 //! Antibodies, detected from their sequence, and the part of them that binds.
 //!
-//! A variable domain is what the crate immunum aligns to the consensus of heavy, kappa or lambda chains with a
-//! confidence of at least its default. Several may stand in one chain, as where H and L were merged or in a
+//! A variable domain is a segment that the crate immunum aligns to the consensus of heavy, kappa or lambda chains with a
+//! confidence of at least its default. One chain may have several, as where H and L were merged or in a
 //! single-chain Fv.
 //!
 //! Complementarity-determining regions (CDRs) are the residues that either of two numberings counts among them: IMGT's
@@ -63,7 +63,7 @@ impl VariableKind {
 pub struct VariableDomain {
     /// Kind of the chain that it belongs to.
     pub kind: VariableKind,
-    /// The file's name of the chain that it stands in; may be empty.
+    /// The file's name of its chain; may be empty.
     pub chain: String,
     /// First and last residue: the author's number with its insertion code.
     pub residues: [String; 2],
@@ -124,17 +124,13 @@ impl Antibody {
     }
 }
 
-/// Antibodies bind by their CDRs and what lies about these.
+/// Antibodies bind by their CDRs and the atoms around them.
 pub struct AntibodyPrior;
 
 /// Score of a contact away from the paratope, in contacts: about what contacts earn.
 const WEIGHT: f64 = 1.0;
 
 impl Prior for AntibodyPrior {
-    fn name(&self) -> &'static str {
-        "antibody"
-    }
-
     fn sites(&self, molecule: &Molecule) -> Vec<Site> {
         let site = |antibody: Antibody| Site {
             role: SiteRole::Exclusive,

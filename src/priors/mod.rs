@@ -1,4 +1,4 @@
-//! Priors: what is known of kinds of proteins beyond the two structures at hand, such as where an antibody binds.
+//! Priors: knowledge of kinds of proteins beyond the two structures at hand, such as where an antibody binds.
 //!
 //! A prior finds the sites of a molecule that mostly bind. A new kind of protein is one file here and one line in
 //! [`PRIORS`]; the scene of a docking run and `knotdock inspect` walk the registry.
@@ -7,9 +7,8 @@ pub mod active_residues;
 pub mod antibody;
 pub mod flexible_regions;
 pub mod peptidase;
-mod peptidase_families;
+pub mod residue_roles;
 pub mod restrained;
-pub mod restraints;
 #[cfg(test)]
 mod test_chains;
 
@@ -59,9 +58,6 @@ pub struct Findings {
 
 /// Knowledge of one kind of proteins.
 pub trait Prior: Sync {
-    /// Name of the kind, in words.
-    fn name(&self) -> &'static str;
-
     /// The sites of a molecule; none where it is not of the kind.
     fn sites(&self, molecule: &Molecule) -> Vec<Site>;
 
@@ -88,9 +84,9 @@ mod tests {
         let found: Vec<&str> = PRIORS
             .iter()
             .filter(|prior| !prior.sites(&trypsin).is_empty())
-            .map(|prior| prior.name())
+            .map(|prior| prior.entry_name())
             .collect();
-        assert_eq!(found, ["peptidase"]);
+        assert_eq!(found, ["active_sites"]);
         for prior in PRIORS {
             let has_site = !prior.sites(&trypsin).is_empty();
             assert_eq!(!prior.findings(&trypsin).lines.is_empty(), has_site);
@@ -109,14 +105,8 @@ mod tests {
     #[test]
     fn names_are_distinct_and_nothing_is_found_in_nothing() {
         let empty = Molecule::new(Vec::new(), Format::Pdb);
-        let mut names: Vec<&str> = PRIORS
-            .iter()
-            .flat_map(|p| [p.name(), p.entry_name()])
-            .collect();
-        names.sort_unstable();
-        names.dedup();
-        // The antibody's entry is called as its kind.
-        assert_eq!(names, ["active_sites", "antibody", "peptidase"]);
+        let names = PRIORS.map(|prior| prior.entry_name());
+        assert_eq!(names, ["antibody", "active_sites"]);
         assert!(PRIORS.iter().all(|prior| prior.sites(&empty).is_empty()));
     }
 }

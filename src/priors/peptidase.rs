@@ -12,12 +12,12 @@
 use crate::options::PEPTIDASE_WEIGHT;
 use std::collections::BTreeSet;
 use std::ops::Range;
+use std::sync::LazyLock;
 
 use knotdock_structures::molecule::{Molecule, PeptideChain};
 use serde::Serialize;
 use serde_json::json;
 
-use super::peptidase_families::{Anchor, families};
 use super::{Findings, Prior, Site, SiteRole};
 
 /// Largest distance in Å of the CA atoms of two catalytic residues; known structures have 6 to 9.
@@ -49,7 +49,7 @@ impl ActiveSite {
         let mut sites = Vec::new();
         for family in families() {
             let of = |anchor: &Anchor| places(molecule, anchor, &chains);
-            let found: Vec<Vec<Vec<Found>>> = family.anchors.iter().map(of).collect();
+            let found: Vec<Vec<Vec<CatalyticResidue>>> = family.anchors.iter().map(of).collect();
             for catalytic in together(&found) {
                 let atoms = catalytic.iter().map(|own| own.atoms.clone().collect());
                 sites.push(Self {
@@ -84,10 +84,6 @@ impl ActiveSite {
 pub struct PeptidasePrior;
 
 impl Prior for PeptidasePrior {
-    fn name(&self) -> &'static str {
-        "peptidase"
-    }
-
     fn sites(&self, molecule: &Molecule) -> Vec<Site> {
         let site = |site: ActiveSite| Site {
             role: SiteRole::Favoured,
@@ -117,14 +113,14 @@ impl Prior for PeptidasePrior {
     }
 }
 
-/// A catalytic residue that was found.
+/// A catalytic residue of a molecule.
 #[derive(Clone, Debug)]
-struct Found {
+struct CatalyticResidue {
     /// `chain:number` by the author's names.
     name: String,
     /// The indices of its atoms in the molecule.
     atoms: Range<usize>,
-    /// Where its CA stands, Å.
+    /// Position of its CA, in Å.
     position: [f64; 3],
 }
 
@@ -133,14 +129,15 @@ fn places(
     molecule: &Molecule,
     anchor: &Anchor,
     chains: &[(&PeptideChain<'_>, Vec<char>)],
-) -> Vec<Vec<Found>> {
+) -> Vec<Vec<CatalyticResidue>> {
     let mut places = Vec::new();
     for (chain, sequence) in chains {
         for start in 0..sequence.len() {
             let rest = &sequence[start..];
             if anchor.patterns.iter().any(|pattern| fits(rest, pattern)) {
-                let found = |place: &usize| found(molecule, chain, start + place);
-                let catalytic: Option<Vec<Found>> = anchor.catalytic.iter().map(found).collect();
+                let found = |place: &usize| catalytic_residue(molecule, chain, start + place);
+                let catalytic: Option<Vec<CatalyticResidue>> =
+                    anchor.catalytic.iter().map(found).collect();
                 places.extend(catalytic);
             }
         }
@@ -149,11 +146,15 @@ fn places(
 }
 
 /// A residue of a chain, if it has a CA.
-fn found(molecule: &Molecule, chain: &PeptideChain<'_>, place: usize) -> Option<Found> {
+fn catalytic_residue(
+    molecule: &Molecule,
+    chain: &PeptideChain<'_>,
+    place: usize,
+) -> Option<CatalyticResidue> {
     let residue = chain.residues.get(place)?;
     let mut atoms = molecule.atoms[residue.atoms.clone()].iter();
     let carbon = atoms.find(|atom| atom.name == "CA")?;
-    Some(Found {
+    Some(CatalyticResidue {
         name: format!("{}:{}", chain.name, residue.number),
         atoms: residue.atoms.clone(),
         position: carbon.position,
@@ -170,18 +171,18 @@ fn fits(sequence: &[char], pattern: &[String]) -> bool {
 }
 
 /// One place of every anchor, all of whose catalytic residues stand together, in each way that there is.
-fn together(found: &[Vec<Vec<Found>>]) -> Vec<Vec<Found>> {
-    let near = |a: &Found, b: &Found| {
+fn together(found: &[Vec<Vec<CatalyticResidue>>]) -> Vec<Vec<CatalyticResidue>> {
+    let near = |a: &CatalyticResidue, b: &CatalyticResidue| {
         let square: f64 = (0..3)
             .map(|axis| (a.position[axis] - b.position[axis]).powi(2))
             .sum();
         a.atoms != b.atoms && square <= TOGETHER * TOGETHER
     };
-    let mut ways: Vec<Vec<Found>> = vec![Vec::new()];
+    let mut ways: Vec<Vec<CatalyticResidue>> = vec![Vec::new()];
     for places in found {
-        let with = |way: &Vec<Found>| -> Vec<Vec<Found>> {
-            let fit = |place: &&Vec<Found>| {
-                let all = |own: &Found| place.iter().all(|other| near(own, other));
+        let with = |way: &Vec<CatalyticResidue>| -> Vec<Vec<CatalyticResidue>> {
+            let fit = |place: &&Vec<CatalyticResidue>| {
+                let all = |own: &CatalyticResidue| place.iter().all(|other| near(own, other));
                 way.iter().all(all)
             };
             let places = places.iter().filter(fit);
@@ -198,6 +199,103 @@ fn together(found: &[Vec<Vec<Found>>]) -> Vec<Vec<Found>> {
         seen.insert(atoms.collect::<BTreeSet<_>>())
     });
     ways
+}
+
+/// The table; its head describes the columns and their sources.
+const TABLE: &str = include_str!("peptidase_families.csv");
+
+/// Amino acids allowed at each place of a segment; none stands for any.
+type Pattern = Vec<String>;
+
+/// A conserved segment about catalytic residues.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Anchor {
+    /// What the segment may look like; of several that fit at one place the first counts.
+    pub patterns: Vec<Pattern>,
+    /// Places of the catalytic residues in it, from 0.
+    pub catalytic: Vec<usize>,
+}
+
+/// A family of peptidases.
+#[derive(Clone, Debug, PartialEq, Eq)]
+struct Family {
+    /// Name in MEROPS.
+    pub name: String,
+    /// An enzyme of it that the field knows.
+    pub known_by: String,
+    /// Segments that its members have, all of them.
+    pub anchors: Vec<Anchor>,
+}
+
+/// The families, in the order of the table.
+fn families() -> &'static [Family] {
+    static FAMILIES: LazyLock<Vec<Family>> = LazyLock::new(|| {
+        // The table is part of the program, and a test reads it.
+        parse(TABLE).unwrap_or_else(|| unreachable!("the table of peptidase families"))
+    });
+    &FAMILIES
+}
+
+/// The families of a table; `None` if a row cannot be read.
+fn parse(table: &str) -> Option<Vec<Family>> {
+    let mut families: Vec<Family> = Vec::new();
+    let mut rows = csv::ReaderBuilder::new()
+        .comment(Some(b'#'))
+        .from_reader(table.as_bytes());
+    for record in rows.records() {
+        let record = record.ok()?;
+        let fields: Vec<&str> = record.iter().collect();
+        let [name, known_by, patterns, catalytic] = fields[..] else {
+            return None;
+        };
+        let anchor = anchor(patterns, catalytic)?;
+        match families.last_mut() {
+            Some(family) if family.name == name => family.anchors.push(anchor),
+            _ => families.push(Family {
+                name: name.to_owned(),
+                known_by: known_by.to_owned(),
+                anchors: vec![anchor],
+            }),
+        }
+    }
+    Some(families)
+}
+
+fn anchor(patterns: &str, catalytic: &str) -> Option<Anchor> {
+    let patterns: Vec<Pattern> = patterns
+        .split('|')
+        .map(|pattern| pattern.trim().split('-').map(allowed).collect())
+        .collect::<Option<_>>()?;
+    let shortest = patterns.iter().map(Vec::len).min().unwrap_or(0);
+    let place = |text: &str| {
+        let place = text.parse::<usize>().ok();
+        place
+            .filter(|place| (1..=shortest).contains(place))
+            .map(|place| place - 1)
+    };
+    let catalytic: Vec<usize> = catalytic
+        .split_whitespace()
+        .map(place)
+        .collect::<Option<_>>()?;
+    (!catalytic.is_empty()).then_some(Anchor {
+        patterns,
+        catalytic,
+    })
+}
+
+/// The amino acids allowed at one place of a pattern: `x`, one letter, or letters in brackets.
+fn allowed(place: &str) -> Option<String> {
+    let letters = place
+        .strip_prefix('[')
+        .and_then(|rest| rest.strip_suffix(']'))
+        .unwrap_or(place);
+    let are_letters = letters.chars().all(|letter| letter.is_ascii_uppercase());
+    match letters {
+        "x" => Some(String::new()),
+        "" => None,
+        _ if are_letters && (letters.len() == 1 || place != letters) => Some(letters.to_owned()),
+        _ => None,
+    }
 }
 
 #[cfg(test)]
@@ -429,5 +527,39 @@ mod tests {
         atoms.retain(|atom| atom.residue_number != 218 || atom.name != "CA");
         assert_eq!(sites(atoms), []);
         assert_eq!(sites(Vec::new()), []);
+    }
+
+    #[test]
+    fn the_table_is_read() {
+        let families = parse(TABLE).unwrap();
+        let names: Vec<&str> = families.iter().map(|family| family.name.as_str()).collect();
+        assert_eq!(names, ["S1", "S8", "C1", "A1", "M10", "M14"]);
+        let serine = &families[0].anchors[1];
+        assert_eq!(serine.patterns[0], ["G", "D", "", "G", "GS"]);
+        assert_eq!(serine.patterns[1].len(), 4);
+        assert_eq!(serine.catalytic, [2]);
+        assert_eq!(families[5].anchors[0].catalytic, [0, 3]);
+    }
+
+    #[test]
+    fn a_row_that_cannot_be_read_is_refused() {
+        let families = |row: &str| {
+            parse(&format!(
+                "# comment\nfamily,known_by,patterns,catalytic\nS1,a,H-x,1\n{row}\n"
+            ))
+        };
+        assert!(families("S1,trypsin,H-E,2").is_some());
+        for row in [
+            "S1,trypsin,H-E,3",
+            "S1,trypsin,H-E | H,2",
+            "S1,trypsin,H-E,one",
+            "S1,trypsin,H-E,",
+            "S1,trypsin,H--E,1",
+            "S1,trypsin,H-ST,1",
+            "S1,trypsin,H-[St],1",
+            "S1,trypsin,H-E",
+        ] {
+            assert_eq!(families(row), None, "{row}");
+        }
     }
 }

@@ -41,8 +41,7 @@ impl Restrained {
             if let Some(source) = source {
                 let residues = source.residues(molecules[side]);
                 predicted[side] = residues.map_err(|error| {
-                    let side = ["receptor", "ligand"][side];
-                    Error::from(error).within(format!("of the {side}"))
+                    error.within(format!("of the {}", ["receptor", "ligand"][side]))
                 })?;
             }
         }

@@ -5,7 +5,7 @@
 //! than [`RefineOptions::max_move`]: unbound molecules clash where they belong, and what is lowest is then elsewhere.
 //!
 //! 1. The rigid optimum near the pose: that of [`SharpFit::best_near`] or, if it is too far, of [`SharpFit::descend`].
-//! 2. The side chains of the interface, packed for that place by energies of their own ([`crate::side_chains`]).
+//! 2. The side chains of the interface, packed for that place by their own energies ([`crate::side_chains`]).
 //! 3. The rigid optimum of the packed molecules. Packing is judged after it, for new side chains need a new place.
 //!
 //! Lengths are in Å, energies of the sharp fit in RT.
@@ -46,7 +46,7 @@ pub struct Refiner<'a> {
 /// A refined pose.
 #[derive(Clone, Debug)]
 pub struct Refined {
-    /// Where the ligand goes now.
+    /// Refined pose of the ligand.
     pub pose: Pose,
     /// Root mean square distance in Å of the ligand's atoms between the old pose and this one, side chains as they were.
     pub rmsd_moved: f64,
@@ -94,7 +94,7 @@ impl<'a> Refiner<'a> {
         })
     }
 
-    /// Refines a pose. Single-threaded; poses may be refined side by side, each thread with a list of its own.
+    /// Refines a pose. Single-threaded; poses may be refined side by side, each thread with its own list.
     ///
     /// # Errors
     /// [`KnotsError`], which no molecule gives that [`Self::new`] took.

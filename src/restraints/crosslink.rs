@@ -19,7 +19,7 @@ pub struct Crosslink {
     pub atom: &'static str,
     /// Largest distance of these atoms, in Å.
     pub upper: f64,
-    /// Where the bound is published.
+    /// Publication of the bound.
     pub source: &'static str,
 }
 
@@ -50,16 +50,11 @@ pub(super) fn names() -> String {
     CROSSLINKS.map(|crosslink| crosslink.name).join(", ")
 }
 
-/// A reagent was named that no preset is for.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("there is no preset for the cross-links of `{0}`; there are {names}", names = names())]
-pub struct UnknownCrosslink(pub String);
-
 impl FromStr for Crosslink {
-    type Err = UnknownCrosslink;
+    type Err = String;
 
     /// Finds a reagent by one of its names, whatever their case and blanks.
-    fn from_str(name: &str) -> Result<Self, UnknownCrosslink> {
+    fn from_str(name: &str) -> Result<Self, String> {
         let plain = |name: &str| name.replace(char::is_whitespace, "").to_lowercase();
         let wanted = plain(name);
         let mut crosslinks = CROSSLINKS.into_iter();
@@ -68,7 +63,10 @@ impl FromStr for Crosslink {
                 let mut names = crosslink.aliases.iter().chain([&crosslink.name]);
                 names.any(|name| plain(name) == wanted)
             })
-            .ok_or_else(|| UnknownCrosslink(name.to_owned()))
+            .ok_or_else(|| {
+                let known = names();
+                format!("there is no preset for the cross-links of `{name}`; there are {known}")
+            })
     }
 }
 
@@ -111,7 +109,7 @@ mod tests {
     fn unknown_reagents_are_refused_with_the_list() {
         let error = "XYZ".parse::<Crosslink>().unwrap_err();
         assert_eq!(
-            error.to_string(),
+            error,
             "there is no preset for the cross-links of `XYZ`; there are DSS, BS3"
         );
     }

@@ -3,35 +3,29 @@
 use knotdock_structures::molecule::Molecule;
 use proptest::prelude::*;
 
-use super::error::Located;
 use super::{CROSSLINKS, NamedRestraint, TblBounds, parse};
 use crate::test_molecules::molecules;
 
-/// Reads bytes in both formats; what is read must be usable.
-fn reads_or_refuses(bytes: &[u8]) {
+/// Reads a text in both formats; what is read must be usable.
+fn reads_or_refuses(text: &str) {
     let [receptor, ligand] = molecules();
     for (is_tbl, crosslink) in [(true, None), (false, None), (false, Some(CROSSLINKS[0]))] {
         let bounds = TblBounds::Widened;
-        match parse(
-            bytes.to_vec(),
-            is_tbl,
-            [&receptor, &ligand],
-            crosslink,
-            bounds,
-        ) {
+        match parse(text, is_tbl, [&receptor, &ligand], crosslink, bounds) {
             Ok(restraints) => {
                 for restraint in restraints.list {
                     check(&restraint, [&receptor, &ligand]);
                 }
             }
-            Err(Located { line, fault, .. }) => {
-                let ends = bytes.iter().filter(|byte| b"\r\n".contains(byte));
-                let lines = 1 + ends.count();
+            Err(error) => {
+                let ends = text.bytes().filter(|byte| b"\r\n".contains(byte));
+                let lines = 1 + ends.count() as u64;
+                let line = error.line();
                 assert!(
                     line.is_none_or(|line| (1..=lines).contains(&line)),
                     "{line:?}"
                 );
-                assert!(!fault.to_string().is_empty() && !fault.remedy().is_empty());
+                assert!(!error.message().is_empty() && error.remedy().is_some());
             }
         }
     }
@@ -102,24 +96,24 @@ fn atoms(molecule: &Molecule, (chain, number, name): (&str, i64, Option<&str>)) 
 proptest! {
     #[test]
     fn any_bytes_are_read_or_refused(bytes in prop::collection::vec(any::<u8>(), 0..200)) {
-        reads_or_refuses(&bytes);
+        reads_or_refuses(&String::from_utf8_lossy(&bytes));
     }
 
     #[test]
     fn any_text_is_read_or_refused(text in any::<String>()) {
-        reads_or_refuses(text.as_bytes());
-        reads_or_refuses(format!("receptor,ligand,upper\n{text}").as_bytes());
-        reads_or_refuses(format!("assign ({text}").as_bytes());
+        reads_or_refuses(&text);
+        reads_or_refuses(&format!("receptor,ligand,upper\n{text}"));
+        reads_or_refuses(&format!("assign ({text}"));
     }
 
     #[test]
     fn any_words_are_read_or_refused(words in prop::collection::vec(word(), 0..40)) {
         for gap in ["", " "] {
             let text = words.join(gap);
-            reads_or_refuses(text.as_bytes());
-            reads_or_refuses(format!("receptor,ligand\n{text}").as_bytes());
-            reads_or_refuses(format!("assign (segid A) (segid B) 2 2 0 {text}").as_bytes());
-            reads_or_refuses(format!("assign ({text}) (segid B) 2 2 0").as_bytes());
+            reads_or_refuses(&text);
+            reads_or_refuses(&format!("receptor,ligand\n{text}"));
+            reads_or_refuses(&format!("assign (segid A) (segid B) 2 2 0 {text}"));
+            reads_or_refuses(&format!("assign ({text}) (segid B) 2 2 0"));
         }
     }
 
@@ -152,7 +146,7 @@ proptest! {
         }
         for (is_tbl, text) in [(true, statements), (false, table)] {
             let bounds = TblBounds::Written;
-            let read = parse(text.into_bytes(), is_tbl, [&receptor, &ligand], None, bounds);
+            let read = parse(&text, is_tbl, [&receptor, &ligand], None, bounds);
             let read = read.unwrap().list;
             prop_assert_eq!(read.len(), expected.len());
             for (restraint, (pair, bounds)) in read.iter().zip(&expected) {

@@ -1,4 +1,4 @@
-//! Distance restraints: what experiments say of distances between receptor and ligand, read from a file.
+//! Distance restraints between receptor and ligand, from experiments, read from a file.
 //!
 //! # Conventions
 //!
@@ -11,13 +11,11 @@
 //! # Files
 //!
 //! - `.tbl`: assign statements of CNS, X-PLOR and HADDOCK ([`tbl`]).
-//! - Any other ending: a CSV table, a row a pair of residues or atoms ([`table`]). A preset of a cross-linking reagent
+//! - Any other ending: a CSV table, one row per pair of residues or atoms ([`table`]). A preset of a cross-linking reagent
 //!   ([`Crosslink`]) gives its rows their upper bound.
 
-mod bounds;
 pub mod crosslink;
-pub mod error;
-mod needed;
+mod required_count;
 mod restraint;
 mod side_atoms;
 pub mod table;
@@ -26,18 +24,17 @@ pub mod tbl;
 #[cfg(test)]
 mod fuzz_tests;
 
-pub use self::crosslink::{CROSSLINKS, Crosslink, UnknownCrosslink};
-pub use self::error::{RestraintFault, RestraintFileError};
-pub use self::needed::{Needed, NeededError};
+pub use self::crosslink::{CROSSLINKS, Crosslink};
+pub use self::required_count::RequiredCount;
 pub use self::restraint::{FileRestraints, NamedRestraint, TblBounds};
 
 use std::path::{Path, PathBuf};
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 use serde::{Deserialize, Serialize};
 
-use self::error::Located;
-use crate::bounded_read::{MAX_RESTRAINTS, read_bounded};
+use crate::bounded_read::{MAX_RESTRAINTS, read_bounded_text};
 
 /// A file of restraints as it was read. Which atoms it names depends on the molecules.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -52,34 +49,31 @@ impl RestraintFile {
     /// Reads a file.
     ///
     /// # Errors
-    /// [`RestraintFileError`] where it cannot be read, is too large or no text.
-    pub fn read(path: &Path) -> Result<Self, RestraintFileError> {
-        let unreadable = |error: String| Located::in_file(RestraintFault::Unreadable(error));
-        let text = read_bounded(path, MAX_RESTRAINTS)
-            .map_err(|error| unreadable(error.to_string()))
-            .and_then(|bytes| {
-                String::from_utf8(bytes)
-                    .map_err(|_| unreadable("it is no text in UTF-8".to_owned()))
-            });
+    /// [`Error`] if it cannot be read, is too large or no text.
+    pub fn read(path: &Path) -> Result<Self, Error> {
+        let text = read_bounded_text(path, MAX_RESTRAINTS).map_err(|error| {
+            Error::input(format!("the restraints cannot be read: {error}"))
+                .at(path)
+                .help("give a text in UTF-8: a CSV table, or a .tbl file with assign statements")
+        })?;
         Ok(Self {
             path: path.to_owned(),
-            text: text.map_err(|located| located.of(path))?,
+            text,
         })
     }
 
     /// The restraints between the molecules receptor and ligand.
     ///
     /// # Errors
-    /// [`RestraintFileError`], also where a file of `.tbl` is given with a preset: its statements have their distances.
+    /// [`Error`], also if a file of `.tbl` is given with a preset: its statements have their own distances.
     pub fn between(
         &self,
         molecules: [&Molecule; 2],
         crosslink: Option<Crosslink>,
         bounds: TblBounds,
-    ) -> Result<FileRestraints, RestraintFileError> {
-        let bytes = self.text.clone().into_bytes();
-        parse(bytes, is_tbl(&self.path), molecules, crosslink, bounds)
-            .map_err(|located| located.of(&self.path))
+    ) -> Result<FileRestraints, Error> {
+        parse(&self.text, is_tbl(&self.path), molecules, crosslink, bounds)
+            .map_err(|error| error.at(&self.path))
     }
 }
 
@@ -89,47 +83,36 @@ fn is_tbl(path: &Path) -> bool {
         .is_some_and(|ending| ending.eq_ignore_ascii_case("tbl"))
 }
 
-/// The restraints of a file's bytes.
+/// The restraints of a file's text.
 fn parse(
-    bytes: Vec<u8>,
+    text: &str,
     is_tbl: bool,
     molecules: [&Molecule; 2],
     crosslink: Option<Crosslink>,
     bounds: TblBounds,
-) -> Result<FileRestraints, Located> {
-    let bytes = with_line_feeds(bytes);
+) -> Result<FileRestraints, Error> {
+    // LF at the end of every line, so that both readers count lines alike.
+    let text = text.replace("\r\n", "\n").replace('\r', "\n");
     let restraints = match (is_tbl, crosslink) {
-        (true, Some(crosslink)) => Err(Located::in_file(RestraintFault::CrosslinkOfTbl(
-            crosslink.name,
-        ))),
-        (true, None) => tbl::parse(bytes, molecules, bounds),
-        (false, _) => table::parse(bytes, molecules, crosslink).map(|list| FileRestraints {
-            list,
-            within_one_molecule: 0,
-        }),
+        (true, Some(Crosslink { name, .. })) => Err(Error::input(format!(
+            "--crosslink {name} does nothing in a .tbl file, whose statements have their own distances"
+        ))
+        .help("leave out --crosslink, or give the cross-links as a CSV table")),
+        (true, None) => tbl::parse(&text, molecules, bounds),
+        (false, _) => {
+            table::parse(text.into_bytes(), molecules, crosslink).map(|list| FileRestraints {
+                list,
+                within_one_molecule: 0,
+            })
+        }
     }?;
     if restraints.list.is_empty() {
-        return Err(Located::in_file(RestraintFault::NoRestraint));
+        return Err(Error::input("there is no restraint in the file").help(
+            "add rows below `receptor,ligand,upper`, or to a .tbl file statements such as \
+             `assign (resid 10 and segid A) (resid 20 and segid B) 2.0 2.0 0.0`",
+        ));
     }
     Ok(restraints)
-}
-
-/// The text with LF at the end of every line, so that both readers count lines alike.
-fn with_line_feeds(bytes: Vec<u8>) -> Vec<u8> {
-    if !bytes.contains(&b'\r') {
-        return bytes;
-    }
-    let mut text = Vec::with_capacity(bytes.len());
-    let mut bytes = bytes.into_iter().peekable();
-    while let Some(byte) = bytes.next() {
-        if byte == b'\r' {
-            bytes.next_if_eq(&b'\n');
-            text.push(b'\n');
-        } else {
-            text.push(byte);
-        }
-    }
-    text
 }
 
 #[cfg(test)]
@@ -137,7 +120,7 @@ mod tests {
     use super::*;
     use crate::test_molecules::molecules;
 
-    fn written(name: &str, bytes: &[u8]) -> Result<Vec<NamedRestraint>, RestraintFileError> {
+    fn written(name: &str, bytes: &[u8]) -> Result<Vec<NamedRestraint>, Error> {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join(name);
         std::fs::write(&path, bytes).unwrap();
@@ -146,8 +129,8 @@ mod tests {
             .and_then(|file| file.between([&receptor, &ligand], None, TblBounds::Written))
             .map(|restraints| restraints.list);
         if let Err(error) = &read {
-            assert_eq!(error.path, path);
-            assert!(!error.remedy().is_empty());
+            assert_eq!(error.file(), Some(path.as_path()));
+            assert!(error.remedy().is_some());
         }
         read
     }
@@ -179,7 +162,7 @@ mod tests {
                 for mark in ["", "\u{feff}"] {
                     let text = format!("{mark}{}", text.replace('\n', end));
                     let error = written(name, text.as_bytes()).unwrap_err();
-                    assert_eq!(error.line, Some(4), "{text:?}");
+                    assert_eq!(error.line(), Some(4), "{text:?}");
                 }
             }
         }
@@ -188,34 +171,31 @@ mod tests {
     #[test]
     fn what_cannot_be_read_is_refused() {
         for name in ["a.csv", "a.tbl"] {
-            let fault = |bytes: &[u8]| written(name, bytes).unwrap_err().fault;
-            assert!(matches!(*fault(b"\xff\xfe"), RestraintFault::Unreadable(_)));
+            let error = |bytes: &[u8]| written(name, bytes).unwrap_err();
+            assert!(error(b"\xff\xfe").message().contains("cannot be read"));
             let large = vec![b'\n'; MAX_RESTRAINTS as usize + 1];
-            assert!(fault(&large).to_string().contains("more than 16 MiB"));
+            assert!(error(&large).message().contains("more than 16 MiB"));
         }
-        assert_eq!(
-            *written("a.tbl", b"! nothing\n").unwrap_err().fault,
-            RestraintFault::NoRestraint
-        );
-        assert_eq!(
-            *written("a.csv", b"receptor,ligand,upper\n")
-                .unwrap_err()
-                .fault,
-            RestraintFault::NoRestraint
-        );
+        for (name, text) in [
+            ("a.tbl", "! nothing\n"),
+            ("a.csv", "receptor,ligand,upper\n"),
+        ] {
+            let error = written(name, text.as_bytes()).unwrap_err();
+            assert!(error.message().contains("no restraint"), "{error}");
+        }
         let error = RestraintFile::read(Path::new("nowhere.csv")).unwrap_err();
         assert_eq!(
-            (error.line, error.path.as_path()),
-            (None, Path::new("nowhere.csv"))
+            (error.line(), error.file()),
+            (None, Some(Path::new("nowhere.csv")))
         );
     }
 
     #[test]
     fn a_preset_is_for_tables() {
         let [receptor, ligand] = molecules();
-        let text = b"assign (segid A) (segid B) 4 4 4".to_vec();
+        let text = "assign (segid A) (segid B) 4 4 4";
         let dss = Some(CROSSLINKS[0]);
         let error = parse(text, true, [&receptor, &ligand], dss, TblBounds::Written).unwrap_err();
-        assert_eq!(error.fault, RestraintFault::CrosslinkOfTbl("DSS"));
+        assert!(error.message().starts_with("--crosslink DSS"), "{error}");
     }
 }

@@ -1,9 +1,10 @@
-//! One restraint, and how much of them is kept.
+//! Restraints as read, their bounds, and how many atoms they may hold.
 
 use knotdock_scoring::terms::pose::DistanceRestraint;
+use knotdock_structures::Error;
 use serde::{Deserialize, Serialize};
 
-use crate::restraints::error::RestraintFault;
+use crate::table_text::named_columns::shortened;
 
 /// The restraints of a file between two molecules.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -31,7 +32,7 @@ pub struct NamedRestraint {
     /// Name for reports: the group or the two residues of a row, or the number of the statement.
     pub name: String,
     /// 1-based line on which it begins.
-    pub line: usize,
+    pub line: u64,
     /// Alternatives, each as indices of atoms of receptor and ligand, rising. Every atom of the one set pairs with
     /// every atom of the other. A pair of atoms that is in two alternatives counts twice.
     pub pairs: Vec<[Vec<usize>; 2]>,
@@ -66,13 +67,74 @@ pub(super) struct SelectedAtoms(usize);
 
 impl SelectedAtoms {
     /// Counts the atoms of an alternative.
-    pub(super) fn add(&mut self, pair: &[Vec<usize>; 2]) -> Result<(), RestraintFault> {
+    pub(super) fn add(&mut self, pair: &[Vec<usize>; 2]) -> Result<(), Error> {
         self.0 += pair[0].len() + pair[1].len();
         if self.0 > MAX_SELECTED {
-            return Err(RestraintFault::TooManyAtoms(MAX_SELECTED));
+            return Err(Error::input(format!(
+                "the restraints hold more than {MAX_SELECTED} atoms in all"
+            ))
+            .help("select residues or atoms in place of whole chains"));
         }
         Ok(())
     }
+}
+
+/// Largest distance that is taken, in Å: far beyond any molecule, and its sixth power is a number.
+const MAX_DISTANCE: f64 = 1e10;
+
+/// Bounds of an effective distance, in Å: 0 <= lower <= target <= upper, and upper is above 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Bounds {
+    pub(super) lower: f64,
+    pub(super) target: Option<f64>,
+    pub(super) upper: f64,
+}
+
+impl Bounds {
+    /// Bounds as a table gives them.
+    pub(super) fn new(lower: f64, target: Option<f64>, upper: f64) -> Result<Self, Error> {
+        let wrong = |message: String| {
+            Err(Error::input(message).help(
+                "correct the numbers, so that 0 <= lower <= target <= upper and upper is above 0",
+            ))
+        };
+        if lower > upper {
+            return wrong(format!("lower is {lower}, above upper, which is {upper}"));
+        }
+        if upper == 0.0 {
+            return wrong("the upper bound is 0, and atoms cannot be in one place".to_owned());
+        }
+        match target {
+            Some(target) if !(lower..=upper).contains(&target) => wrong(format!(
+                "target is {target}, outside the bounds {lower} and {upper}"
+            )),
+            target => Ok(Self {
+                lower,
+                target,
+                upper,
+            }),
+        }
+    }
+
+    /// Bounds of an assign statement: `minus` below the distance, but not below 0, to `plus` above it.
+    pub(super) fn about(distance: f64, minus: f64, plus: f64) -> Result<Self, Error> {
+        Self::new((distance - minus).max(0.0), Some(distance), distance + plus)
+    }
+}
+
+/// A distance as written, in Å.
+pub(super) fn distance(what: &str, text: &str) -> Result<f64, Error> {
+    let number = text.parse().ok();
+    number
+        .filter(|number| (0.0..=MAX_DISTANCE).contains(number))
+        .map(|number: f64| number + 0.0) // + 0.0 turns a negative zero into 0
+        .ok_or_else(|| {
+            Error::input(format!(
+                "{what} is `{}`; it must be a number of Å from 0 to {MAX_DISTANCE}",
+                shortened(text)
+            ))
+            .help("write the number with a decimal point, as in 8.5")
+        })
 }
 
 #[cfg(test)]
@@ -86,9 +148,51 @@ mod tests {
         let pair = [vec![0; MAX_SELECTED / 4], vec![0; MAX_SELECTED / 4]];
         assert_eq!(atoms.add(&pair), Ok(()));
         assert_eq!(atoms.add(&pair), Ok(()));
-        assert_eq!(
-            atoms.add(&[vec![0], Vec::new()]),
-            Err(RestraintFault::TooManyAtoms(MAX_SELECTED))
+        let error = atoms.add(&[vec![0], Vec::new()]).unwrap_err();
+        assert!(
+            error.message().contains(&MAX_SELECTED.to_string()),
+            "{error}"
         );
+    }
+
+    #[test]
+    fn a_statement_gives_a_distance_and_its_tolerances() {
+        let bounds = |lower, target, upper| {
+            Ok(Bounds {
+                lower,
+                target: Some(target),
+                upper,
+            })
+        };
+        assert_eq!(Bounds::about(2.0, 2.0, 0.0), bounds(0.0, 2.0, 2.0));
+        assert_eq!(Bounds::about(5.0, 1.0, 2.5), bounds(4.0, 5.0, 7.5));
+        // No distance is below 0, so this bound excludes nothing.
+        assert_eq!(Bounds::about(2.0, 3.0, 0.0), bounds(0.0, 2.0, 2.0));
+    }
+
+    #[test]
+    fn bounds_that_nothing_satisfies_are_refused() {
+        for (lower, target, upper) in [
+            (3.0, None, 2.0),
+            (0.0, None, 0.0),
+            (1.0, Some(0.5), 2.0),
+            (1.0, Some(2.5), 2.0),
+        ] {
+            let bounds = Bounds::new(lower, target, upper);
+            assert!(bounds.unwrap_err().remedy().is_some());
+        }
+        assert!(Bounds::new(2.0, Some(2.0), 2.0).is_ok());
+    }
+
+    #[test]
+    fn only_numbers_are_distances() {
+        for text in [
+            "nan", "inf", "-inf", "-1", "1e11", "1e999", "", "8 Å", "8,5", "0x10",
+        ] {
+            let error = distance("upper", text).unwrap_err();
+            assert!(error.message().starts_with("upper is `"), "{error}");
+        }
+        assert_eq!(distance("upper", "+8.5e0"), Ok(8.5));
+        assert!(distance("upper", "-0").unwrap().is_sign_positive());
     }
 }

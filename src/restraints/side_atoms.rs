@@ -2,10 +2,17 @@
 
 use std::collections::HashMap;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{Atom, Molecule, ResidueSelection};
 
-use crate::restraints::error::RestraintFault;
 use crate::table_text::named_columns::{listed, shortened};
+
+/// Remedy for a field that names no residues of the molecule.
+const RESIDUES: &str = "name residues by chain and number, as in A:57, A:52A or A:1-50, and atoms as in A:57.CA; a chain \
+    without a name is _";
+/// Remedy for atoms that the molecule does not have.
+pub(super) const NO_ATOM: &str = "correct the names and numbers. What the file of the molecule lacks, or the options \
+    leave out, cannot be restrained: hydrogens need --hydrogens keep";
 
 /// Reads the fields of one column.
 pub(super) struct SideAtoms<'a> {
@@ -34,7 +41,7 @@ impl<'a> SideAtoms<'a> {
 
     /// The atoms that a field names, rising. Parts with commas or semicolons between are residues as in
     /// [`ResidueSelection`], each perhaps with the name of an atom behind a full stop.
-    pub(super) fn read(&mut self, field: &str) -> Result<Vec<usize>, RestraintFault> {
+    pub(super) fn read(&mut self, field: &str) -> Result<Vec<usize>, Error> {
         if let Some(atoms) = self.known.get(field) {
             return Ok(atoms.clone());
         }
@@ -49,7 +56,7 @@ impl<'a> SideAtoms<'a> {
         self.known.len()
     }
 
-    fn parse(&self, field: &str) -> Result<Vec<usize>, RestraintFault> {
+    fn parse(&self, field: &str) -> Result<Vec<usize>, Error> {
         let parts = field.split([',', ';']).map(|part| {
             let part = part.trim();
             match part.rsplit_once('.') {
@@ -59,9 +66,12 @@ impl<'a> SideAtoms<'a> {
         });
         let (residues, names): (Vec<&str>, Vec<Option<&str>>) = parts.unzip();
         let selection = residues.join(",").parse::<ResidueSelection>();
-        let selection = selection.map_err(|_| RestraintFault::ResidueSyntax {
-            side: self.side,
-            text: shortened(field),
+        let selection = selection.map_err(|_| {
+            let (side, text) = (self.side, shortened(field));
+            Error::input(format!(
+                "{side} is `{text}`, which does not name residues or atoms"
+            ))
+            .help(RESIDUES)
         })?;
         let mut chosen = vec![false; self.molecule.atoms.len()];
         for (part, name) in selection.parts().zip(names) {
@@ -73,17 +83,16 @@ impl<'a> SideAtoms<'a> {
     }
 
     /// The atoms of one part.
-    fn part(
-        &self,
-        residues: &ResidueSelection,
-        name: Option<&str>,
-    ) -> Result<Vec<usize>, RestraintFault> {
+    fn part(&self, residues: &ResidueSelection, name: Option<&str>) -> Result<Vec<usize>, Error> {
         let atoms = &self.molecule.atoms;
         let selected = self.molecule.selected(residues);
-        let selected = selected.map_err(|unknown| RestraintFault::UnknownResidue {
-            side: self.side,
-            residue: shortened(&unknown.part),
-            present: unknown.present(),
+        let selected = selected.map_err(|unknown| {
+            let (side, residue) = (self.side, shortened(&unknown.part));
+            let present = unknown.present();
+            Error::input(format!(
+                "the {side} has no residue {residue}; it has {present}"
+            ))
+            .help(RESIDUES)
         })?;
         let of_residues: Vec<usize> = (0..atoms.len()).filter(|&index| selected[index]).collect();
         let Some(name) = name.or(self.residue_atom) else {
@@ -97,12 +106,14 @@ impl<'a> SideAtoms<'a> {
                     .iter()
                     .map(|&index| &atoms[index])
                     .filter(|atom| residue(atom) == residue(&atoms[first]));
-                Err(RestraintFault::UnknownAtom {
-                    side: self.side,
-                    residue: residue(&atoms[first]),
-                    atom: shortened(name),
-                    present: listed(of_first.map(|atom| atom.name.as_str())),
-                })
+                Err(Error::input(format!(
+                    "{} of the {} has no atom {}; it has {}",
+                    residue(&atoms[first]),
+                    self.side,
+                    shortened(name),
+                    listed(of_first.map(|atom| atom.name.as_str()))
+                ))
+                .help(NO_ATOM))
             }
             _ => Ok(named),
         }
@@ -132,7 +143,7 @@ mod tests {
     use super::*;
     use crate::test_molecules::molecules;
 
-    fn names(field: &str, residue_atom: Option<&'static str>) -> Result<String, RestraintFault> {
+    fn names(field: &str, residue_atom: Option<&'static str>) -> Result<String, Error> {
         let [receptor, _] = molecules();
         let atoms = SideAtoms::new(&receptor, "receptor", residue_atom).read(field)?;
         let name = |index: usize| {

@@ -1,4 +1,4 @@
-//! Tables of restraints: CSV, a row a pair of residues or atoms.
+//! Tables of restraints: CSV, one row per pair of residues or atoms.
 //!
 //! ```text
 //! receptor,ligand,lower,target,upper,group
@@ -15,31 +15,30 @@
 
 use std::collections::{HashMap, HashSet};
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
-use crate::restraints::bounds::{Bounds, distance};
-use crate::restraints::crosslink::Crosslink;
-use crate::restraints::error::{Located, RestraintFault};
-use crate::restraints::restraint::{NamedRestraint, SelectedAtoms};
+use crate::restraints::crosslink::{self, Crosslink};
+use crate::restraints::restraint::{Bounds, NamedRestraint, SelectedAtoms, distance};
 use crate::restraints::side_atoms::SideAtoms;
-use crate::table_text::named_columns::{read_rows, shortened};
+use crate::table_text::named_columns::{Columns, read_rows, shortened};
 
-/// The columns that a table may have.
-pub const COLUMNS: [&str; 6] = ["receptor", "ligand", "lower", "target", "upper", "group"];
+/// The columns of a table.
+const COLUMNS: Columns<6> = Columns {
+    names: ["receptor", "ligand", "lower", "target", "upper", "group"],
+    needed: &["receptor", "ligand"],
+    remedy: "the first row names the columns: receptor, ligand, lower, target, upper, group; receptor and ligand are \
+        needed, and so is upper without --crosslink. Statements (assign) belong in a file whose name ends in .tbl",
+};
 
 /// The restraints of a table. Lines end with LF.
 pub(super) fn parse(
     bytes: Vec<u8>,
     molecules: [&Molecule; 2],
     crosslink: Option<Crosslink>,
-) -> Result<Vec<NamedRestraint>, Located> {
+) -> Result<Vec<NamedRestraint>, Error> {
     let mut rows = Rows::new(molecules, crosslink);
-    let is_table = read_rows(bytes, COLUMNS, &["receptor", "ligand"], |line, row| {
-        rows.add(line, row)
-    })?;
-    if !is_table {
-        return Err(Located::in_file(RestraintFault::NoRestraint));
-    }
+    read_rows(bytes, &COLUMNS, |line, row| rows.add(line, row))?;
     Ok(rows.restraints)
 }
 
@@ -76,11 +75,12 @@ impl<'a> Rows<'a> {
         }
     }
 
-    fn add(&mut self, line: usize, row: &[&str; COLUMNS.len()]) -> Result<(), RestraintFault> {
+    fn add(&mut self, line: u64, row: &[&str; 6]) -> Result<(), Error> {
         let [receptor, ligand, lower, target, upper, group] = *row;
         for (field, column) in [(receptor, "receptor"), (ligand, "ligand")] {
             if field.is_empty() {
-                return Err(RestraintFault::MissingField(column));
+                return Err(Error::input(format!("the row has no {column}"))
+                    .help("give residues or atoms, as in A:57 or A:57.CA"));
             }
         }
         let bounds = self.bounds(lower, target, upper)?;
@@ -89,10 +89,12 @@ impl<'a> Rows<'a> {
         if let Some(known) = self.groups.get_mut(group) {
             let restraint = &mut self.restraints[known.restraint];
             if known.bounds != bounds {
-                return Err(RestraintFault::GroupBounds {
-                    group: shortened(group),
-                    first: restraint.line,
-                });
+                return Err(Error::input(format!(
+                    "the bounds differ from those of group `{}` on line {}",
+                    shortened(group),
+                    restraint.line
+                ))
+                .help("give all rows of a group the same lower, target and upper, since they are one restraint"));
             }
             if known.pairs.insert(pair.clone()) {
                 self.selected.add(&pair)?;
@@ -124,8 +126,8 @@ impl<'a> Rows<'a> {
         Ok(())
     }
 
-    fn bounds(&self, lower: &str, target: &str, upper: &str) -> Result<Bounds, RestraintFault> {
-        let optional = |what, text: &str| -> Result<Option<f64>, RestraintFault> {
+    fn bounds(&self, lower: &str, target: &str, upper: &str) -> Result<Bounds, Error> {
+        let optional = |what: &str, text: &str| -> Result<Option<f64>, Error> {
             (!text.is_empty()).then(|| distance(what, text)).transpose()
         };
         let preset = self.crosslink.map(|crosslink| crosslink.upper);
@@ -133,7 +135,12 @@ impl<'a> Rows<'a> {
         Bounds::new(
             optional("lower", lower)?.unwrap_or(0.0),
             optional("target", target)?,
-            upper.ok_or(RestraintFault::MissingField("upper"))?,
+            upper.ok_or_else(|| {
+                Error::input("the row has no upper").help(format!(
+                    "give the largest distance in Å, or the reagent of cross-links with --crosslink: {}",
+                    crosslink::names()
+                ))
+            })?,
         )
     }
 }

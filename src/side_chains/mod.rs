@@ -31,8 +31,6 @@
 //! that are too entangled are annealed, with numbers that are the same in every run. Nothing depends on the number of
 //! threads.
 
-mod candidates;
-mod clashes;
 mod energy;
 mod packing;
 mod repack;

@@ -4,8 +4,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{HeldSideChain, Molecule, Partner};
 use serde::Serialize;
 
-use super::clashes::clashes;
-use super::scene::{Body, cells};
+use super::scene::{Body, cells, clashes};
 use super::search::{Search, search};
 use super::sites::{Setting, Site};
 

@@ -1,4 +1,4 @@
-//! Both molecules of a pose, made ready for energies.
+//! Both molecules of a pose, made ready for energies and for counts of clashes.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{HydrogenBonding, Molecule, SideChain, hydrogen_bonding};
@@ -87,7 +87,7 @@ fn away(position: [f64; 3], bonded: &[usize], positions: &[[f64; 3]]) -> Option<
     (length > 1e-6).then(|| arm.map(|x| x / length))
 }
 
-/// Heavy atoms by place: cells of `edge` (Å) with what belongs to each.
+/// Heavy atoms by place: cells of `edge` (Å) with an item for each atom.
 pub(super) fn cells<T>(atoms: impl Iterator<Item = ([f64; 3], T)>, edge: f64) -> CellList<T> {
     let members = atoms.map(|(position, item)| Member { position, item });
     CellList::new(members.collect(), edge)
@@ -95,4 +95,30 @@ pub(super) fn cells<T>(atoms: impl Iterator<Item = ([f64; 3], T)>, edge: f64) ->
 
 pub(super) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
+}
+
+/// Two atoms clash if they are nearer than this share of the sum of their radii: carbons at 3.0 Å, a nitrogen and an
+/// oxygen at 2.4 Å.
+const CLASH: f64 = 0.8;
+
+/// Pairs of heavy atoms of two placed molecules that clash; `origin` (Å) lies near both.
+pub(super) fn clashes(receptor: &Molecule, ligand: &Molecule, origin: [f64; 3]) -> usize {
+    let heavy = |molecule: &Molecule| -> Vec<([f64; 3], f64)> {
+        let atoms = molecule.atoms.iter().filter(|atom| !atom.is_hydrogen());
+        atoms
+            .map(|atom| (minus(atom.position, origin), atom.radius))
+            .collect()
+    };
+    let receptor = heavy(receptor);
+    let largest = receptor
+        .iter()
+        .fold(0.0_f64, |largest, (_, radius)| largest.max(*radius));
+    let cells = cells(receptor.into_iter(), REACH);
+    let mut count = 0;
+    for (position, radius) in heavy(ligand) {
+        cells.visit_within(position, CLASH * (largest + radius), |other, square| {
+            count += usize::from(square < (CLASH * (radius + other)).powi(2));
+        });
+    }
+    count
 }

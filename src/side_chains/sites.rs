@@ -102,7 +102,7 @@ impl<'a> Setting<'a> {
         let sites = self.side_chains().zip(self.packed).zip(lists);
         sites
             .map(|((side_chain, &[body, _]), states)| {
-                let site = self.site(body, (side_chain, states), &mut scratch[body]);
+                let site = self.site(body, side_chain, states, &mut scratch[body]);
                 for &atom in &side_chain.near_bonds {
                     scratch[body][atom] = self.positions[body][atom];
                 }
@@ -115,7 +115,8 @@ impl<'a> Setting<'a> {
     fn site(
         &self,
         body: usize,
-        (side_chain, states): (&'a SideChain, Vec<Vec<f64>>),
+        side_chain: &'a SideChain,
+        states: Vec<Vec<f64>>,
         positions: &mut [[f64; 3]],
     ) -> Site<'a> {
         let [phi, psi] = side_chain.backbone;

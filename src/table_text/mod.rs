@@ -1,6 +1,4 @@
-//! Tables as text: cells, columns by name, lines, and what spreadsheets make of them.
+//! Tables as text: cells, and columns by name.
 
 pub mod cells;
-pub mod csv_lines;
 pub mod named_columns;
-pub mod spreadsheet;

@@ -78,8 +78,8 @@ impl Reader {
                         true
                     }
                     Err(error) => {
-                        assert!(!error.to_string().is_empty() && !error.remedy().is_empty());
-                        assert_eq!(error.path(), path);
+                        assert!(!error.to_string().is_empty() && error.remedy().is_some());
+                        assert_eq!(error.file(), Some(path.as_path()));
                         false
                     }
                 }

@@ -30,10 +30,8 @@ pub struct AlignedConformation {
 
 impl AlignedConformation {
     fn new(conformation: &Conformation, input: &Input, first: &Molecule) -> Result<Self, Error> {
-        let place = superpose(&input.molecule, first).map_err(|error| {
-            let failure = Error::input(&error).at(&input.record.path);
-            failure.help(error.remedy())
-        })?;
+        let place =
+            superpose(&input.molecule, first).map_err(|error| error.at(&input.record.path))?;
         Ok(Self {
             name: conformation.name.clone(),
             spec: conformation.spec.clone(),

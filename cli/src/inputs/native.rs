@@ -136,13 +136,8 @@ impl NativeFiles {
             ),
         };
         Evaluator::with_chains(receptor, ligand, native, &choice).map_err(|error| {
-            let mut message = error.to_string();
-            for note in self.notes() {
-                message += &format!("; {note}");
-            }
-            Error::input(message)
-                .at(&file.record.path)
-                .help(error.remedy())
+            let with_notes = self.notes().fold(error, |error, note| error.and(note));
+            with_notes.at(&file.record.path)
         })
     }
 

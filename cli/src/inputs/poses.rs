@@ -6,7 +6,6 @@ use std::path::{Path, PathBuf};
 use crate::tables::pose_list::read_list;
 use clap::Args;
 use knotdock::bounded_read::{MAX_POSES, read_bounded};
-use knotdock::output::tables::poses_reader::PoseTableError;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::LARGEST_LENGTH;
 
@@ -67,12 +66,7 @@ pub fn pose_file(path: &Path) -> Result<Vec<Pose>, Error> {
             .at(name)
             .help("check the name and the permissions of the file")
     })?;
-    let poses = read_list(name, &text).map_err(|error| match error {
-        error @ PoseTableError::Field { .. } | error @ PoseTableError::Quaternion { .. } => {
-            error.into()
-        }
-        error => Error::from(error).help("give columns qw, qx, qy, qz, tx, ty and tz"),
-    })?;
+    let poses = read_list(name, &text)?;
     if poses.is_empty() {
         return Err(Error::input("there are no poses in the file")
             .at(name)

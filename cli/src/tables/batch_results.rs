@@ -3,6 +3,7 @@
 use std::path::Path;
 
 use csv::StringRecord;
+use knotdock_structures::Error;
 use serde_json::Value;
 
 use crate::tables::field;
@@ -10,7 +11,6 @@ use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
 use knotdock::table_text::cells::{TableWriter, unquoted};
 
 use knotdock::output::tables::poses::PoseTable;
-use knotdock::output::tables::poses_reader::PoseTableError;
 
 /// Name of the table in the batch's directory.
 pub const RESULTS: &str = "results.csv";
@@ -57,8 +57,8 @@ impl RunSummary {
     /// Reads the directory of a whole run.
     ///
     /// # Errors
-    /// [`PoseTableError`] when its table of poses cannot be read.
-    pub fn of(directory: &Path) -> Result<Self, PoseTableError> {
+    /// [`Error`] if its table of poses cannot be read.
+    pub fn of(directory: &Path) -> Result<Self, Error> {
         let table = PoseTable::read(&directory.join("poses.csv"))?;
         let rows = table.objects(0..table.rows().len());
         // An ensemble has a record of its own, with the same counts.

@@ -9,8 +9,8 @@ use csv::StringRecord;
 use knotdock::bounded_read::{MAX_PAIRS, read_bounded};
 use knotdock::output::files::checksum::sha256;
 use knotdock::table_text::cells::unquoted;
-use knotdock::table_text::csv_lines::line_of;
-use knotdock::table_text::spreadsheet::{column_name, plain};
+use knotdock::table_text::named_columns::line_of;
+use knotdock::table_text::named_columns::{column_name, plain};
 
 /// What a line begins with that is no row.
 const COMMENT: Option<u8> = Some(b'#');

@@ -8,18 +8,21 @@ use std::path::Path;
 use knotdock_scoring::se3::Pose;
 
 use knotdock::output::files::whole_file::StagedFile;
-use knotdock::output::tables::poses_reader::{PlacementColumns, PoseTableError};
+use knotdock::output::tables::poses_reader::{PlacementColumns, no_table};
 use knotdock::table_text::cells::unquoted_row;
-use knotdock::table_text::csv_lines::line_of;
+use knotdock::table_text::named_columns::line_of;
 
 /// A byte that begins a remark.
 const COMMENT: Option<u8> = Some(b'#');
 
+/// Remedy for a table that is no list of poses.
+const COLUMNS_NEEDED: &str = "give columns qw, qx, qy, qz, tx, ty and tz";
+
 /// Reads the text of a list; `path` is its name in errors.
 ///
 /// # Errors
-/// [`PoseTableError`], with file and line. A table without a row is no error.
-pub fn read_list(path: &Path, text: &[u8]) -> Result<Vec<Pose>, PoseTableError> {
+/// [`Error`], with file and line. A table without a row is no error.
+pub fn read_list(path: &Path, text: &[u8]) -> Result<Vec<Pose>, Error> {
     let line = |position: &csv::Position| line_of(text, position, COMMENT);
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)
@@ -31,10 +34,8 @@ pub fn read_list(path: &Path, text: &[u8]) -> Result<Vec<Pose>, PoseTableError> 
     let mut record = csv::StringRecord::new();
     loop {
         let read = reader.read_record(&mut record);
-        let read = read.map_err(|error| PoseTableError::Csv {
-            path: path.to_owned(),
-            line: error.position().map(line),
-            message: error.to_string(),
+        let read = read.map_err(|error| {
+            no_table(path, &error, error.position().map(line)).help(COLUMNS_NEEDED)
         })?;
         if !read {
             return Ok(poses);
@@ -48,7 +49,8 @@ pub fn read_list(path: &Path, text: &[u8]) -> Result<Vec<Pose>, PoseTableError> 
                 columns.insert(PlacementColumns::UNNAMED)
             }
             None => {
-                columns = Some(PlacementColumns::find(path, &unquoted_row(&record))?);
+                let found = PlacementColumns::find(path, &unquoted_row(&record));
+                columns = Some(found.map_err(|error| error.help(COLUMNS_NEEDED))?);
                 continue;
             }
         };
@@ -81,7 +83,7 @@ pub fn write_list(path: &Path, poses: &[Pose]) -> Result<StagedFile, Error> {
 mod tests {
     use super::*;
 
-    fn read(text: &str) -> Result<Vec<Pose>, PoseTableError> {
+    fn read(text: &str) -> Result<Vec<Pose>, Error> {
         read_list(Path::new("poses.csv"), text.as_bytes())
     }
 
@@ -113,7 +115,7 @@ mod tests {
         ] {
             let error = read(text).unwrap_err();
             assert_eq!(error.line(), Some(line), "{error}");
-            assert!(!error.remedy().is_empty());
+            assert!(error.remedy().is_some());
         }
     }
 }

@@ -1,8 +1,8 @@
 //! Alignment of two chains: by residue number where the numbers agree, by sequence otherwise.
 //!
 //! The sequence alignment is Gotoh's (J. Mol. Biol. 162 (1982) 705-708, affine gaps, time and memory of the product
-//! of the lengths) with free ends. Where a gap could stand in several places alike, in a run of glycines or at the edge
-//! of a missing loop, it stands where the chain that lacks the residues is broken. If nothing is broken there, numbers
+//! of the lengths) with free ends. If a gap fits several places alike, in a run of glycines or at the edge
+//! of a missing loop, it goes where the chain that lacks the residues is broken. If nothing is broken there, numbers
 //! decide: those that agree, and those that leave some out. What then is left open is decided by the superposition
 //! ([`settle`]).
 
@@ -79,7 +79,7 @@ fn places_by_number(residues: &[&Residue]) -> HashMap<Number, Option<usize>> {
     places
 }
 
-/// Where a cell's best score came from: the state before it.
+/// State before a cell's best score.
 #[derive(Clone, Copy, PartialEq)]
 enum State {
     /// Both residues aligned.
@@ -119,7 +119,7 @@ fn best<const N: usize>(candidates: [(f64, State); N]) -> (f64, State) {
     winner
 }
 
-/// What a gap behind each residue of a chain scores, the chain being the one that lacks residues.
+/// Score of a gap after each residue of the chain that lacks residues.
 fn gap_scores(chain: &[&Residue]) -> Vec<f64> {
     let scores = chain.windows(2).map(|pair| match step(pair[0], pair[1]) {
         Step::Joined => GAP_OPEN,

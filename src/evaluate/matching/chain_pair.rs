@@ -1,4 +1,4 @@
-//! Alignments of every chain of the user's molecule with every chain of the native.
+//! Alignments of every chain of the docked molecule with every chain of the native.
 //!
 //! Sequences alone do not say which of several copies a chain is; that is for
 //! [`placements`](crate::evaluate::matching::placements).
@@ -9,22 +9,22 @@ use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
 use crate::evaluate::matching::alignment::{Alignment, align, settle};
-use crate::evaluate::residues::residue::{Number, Residue};
+use crate::evaluate::residues::residue::Number;
 use crate::evaluate::residues::segments::{Step, step};
 use crate::evaluate::residues::{Residues, Segment};
 
-/// Residues of one of the user's chains matched with those of one of the native's.
+/// Residues of a docked chain matched with those of a chain of the native.
 #[derive(Clone, Debug, PartialEq)]
 pub(in crate::evaluate) struct ChainPair {
-    /// Index of the user's segment.
+    /// Index of the docked segment.
     pub user: usize,
     /// Index of the native's segment.
     pub native: usize,
-    /// Equal residues: (index of the user's, index of the native's).
+    /// Equal residues: (index of the docked residue, index of the native's).
     pub pairs: Vec<(usize, usize)>,
     /// Aligned places, equal or not.
     pub aligned: usize,
-    /// Number of residues that were there to align, of the user's and of the native's.
+    /// Number of residues to align, of the docked chain and of the native's.
     pub lengths: (usize, usize),
 }
 
@@ -66,13 +66,7 @@ impl ChainPair {
             .collect();
         let rises = pairs.windows(2).all(|pair| pair[0].1 < pair[1].1);
         let moved = |point: Point3<f64>| Point3::from(motion.apply(point.into()));
-        let any = rises
-            && settle(
-                &members(user, ours),
-                &members(native, theirs),
-                &mut pairs,
-                moved,
-            );
+        let any = rises && settle(&user.at(ours), &native.at(theirs), &mut pairs, moved);
         if any {
             self.pairs = pairs
                 .into_iter()
@@ -98,18 +92,18 @@ impl ChainPair {
     }
 }
 
-/// Aligns some residues of one segment of the user's with some of the native's, each given with the segment's index.
+/// Aligns some residues of one docked segment with some of the native's, each given with the segment's index.
 pub(in crate::evaluate) fn align_members(
     user: &Residues,
     native: &Residues,
     ours: (usize, &[usize]),
     theirs: (usize, &[usize]),
 ) -> ChainPair {
-    let found = align(&members(user, ours.1), &members(native, theirs.1));
+    let found = align(&user.at(ours.1), &native.at(theirs.1));
     ChainPair::of(ours, theirs, &found)
 }
 
-/// Every segment of the user's molecule aligned with every one of the native's, rows by the user's.
+/// Every docked segment aligned with every one of the native's, rows by the docked one.
 ///
 /// Copies are aligned once: chains of the same residues and numbers have the same alignment.
 pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<ChainPair> {
@@ -121,22 +115,19 @@ pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<
             let (ours, theirs) = (&user.segments[u].members, &native.segments[n].members);
             let found = known
                 .entry((our_kind, their_kind))
-                .or_insert_with(|| align(&members(user, ours), &members(native, theirs)));
+                .or_insert_with(|| align(&user.at(ours), &native.at(theirs)));
             all.push(ChainPair::of((u, ours), (n, theirs), found));
         }
     }
     all
 }
 
-/// What the alignment of a chain depends on: each residue's name and number, and what follows it.
+/// Key of a chain's alignment: each residue's name and number, and the link to the next one.
 type Kind<'a> = Vec<(&'a str, Number, Option<Step>)>;
 
 fn kinds(residues: &Residues) -> Vec<Kind<'_>> {
     let of_segment = |segment: &Segment| {
-        let members = segment
-            .members
-            .iter()
-            .map(|&member| &residues.residues[member]);
+        let members = residues.at(&segment.members).into_iter();
         let following = members.clone().skip(1).map(Some).chain([None]);
         let kinds = members.zip(following).map(|(residue, next)| {
             let step = next.map(|next| step(residue, next));
@@ -145,8 +136,4 @@ fn kinds(residues: &Residues) -> Vec<Kind<'_>> {
         kinds.collect()
     };
     residues.segments.iter().map(of_segment).collect()
-}
-
-fn members<'a>(residues: &'a Residues, members: &[usize]) -> Vec<&'a Residue> {
-    members.iter().map(|&i| &residues.residues[i]).collect()
 }

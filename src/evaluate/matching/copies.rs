@@ -7,15 +7,16 @@
 
 use std::collections::HashMap;
 
+use knotdock_structures::Error;
 use nalgebra::{Point3, Vector3};
 
-use crate::evaluate::contacts::contacts_between;
+use crate::evaluate::contacts::{CONTACT_DISTANCE, contacts_between, no_contact};
 use crate::evaluate::matching::chain_pair::ChainPair;
-use crate::evaluate::matching::placement::Placement;
+use crate::evaluate::matching::placements::Placement;
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use crate::evaluate::residues::Residues;
 
-/// Share of what the best combination matches, of either side, that another must match.
+/// Least matched residues of either side, as a share of those of the best combination.
 const MIN_OF_BEST: f64 = 0.8;
 /// Fewer residue contacts than this, and than this share of the largest interface's, are a crystal contact.
 const CRYSTAL_CONTACT: (usize, f64) = (10, 0.2);
@@ -23,15 +24,20 @@ const CRYSTAL_CONTACT: (usize, f64) = (10, 0.2);
 /// A receptor's placement with a ligand's.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(in crate::evaluate) struct Combination {
-    /// Index of the receptor's placement.
-    pub receptor: usize,
-    /// Index of the ligand's.
-    pub ligand: usize,
+    /// Indices of the placements of receptor and ligand.
+    pub placements: [usize; 2],
     /// Residue contacts of the native's chains that they take.
     pub contacts: usize,
 }
 
-/// One side: the user's molecule, the native's residues and the ways in which the first lies on the second.
+impl Combination {
+    /// Its placements among those of receptor and ligand.
+    pub fn of<'a>(&self, all: &'a [Vec<Placement>; 2]) -> [&'a Placement; 2] {
+        [&all[0][self.placements[0]], &all[1][self.placements[1]]]
+    }
+}
+
+/// One side: the docked molecule, the native's residues and the placements of the first on the second.
 #[derive(Clone, Copy)]
 pub(in crate::evaluate) struct PlacedCopy<'a> {
     pub user: &'a Residues,
@@ -74,25 +80,19 @@ pub(in crate::evaluate) struct Combinations {
     pub set_aside: Vec<Combination>,
 }
 
-/// Why nothing can be combined.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(in crate::evaluate) enum Uncombined {
-    /// Both sides only match the same chain.
-    OneCopy,
-    /// No two touch.
-    NoContact,
-}
-
 /// The combinations that count.
 ///
 /// `disjoint` where both sides are placed on one native, of which no residue can belong to both; `named` where the user
 /// names chains, so that no contact is too small.
+///
+/// # Errors
+/// [`Error`] if both sides only match the same chain, or no two touch.
 pub(in crate::evaluate) fn combinations(
-    receptor: PlacedCopy,
-    ligand: PlacedCopy,
+    sides: [PlacedCopy; 2],
     disjoint: bool,
     named: bool,
-) -> Result<Combinations, Uncombined> {
+) -> Result<Combinations, Error> {
+    let [receptor, ligand] = sides;
     let mut counts = ContactCounts::new(receptor.native, ligand.native);
     let mut all = Vec::new();
     let mut any_disjoint = false;
@@ -115,24 +115,30 @@ pub(in crate::evaluate) fn combinations(
                 pairs.map(|(n, m)| counts.of(n, m)).sum()
             };
             all.push(Combination {
-                receptor: r,
-                ligand: l,
+                placements: [r, l],
                 contacts,
             });
         }
     }
     if !any_disjoint {
-        return Err(Uncombined::OneCopy);
+        return Err(Error::input(
+            "receptor and ligand match the same chain of the native, which has only one copy of it",
+        )
+        .help(
+            "give a native with both copies: of a crystal, `knotdock inspect FILE --assembly 1 --write COMPLEX.pdb` \
+             builds the biological assembly",
+        ));
     }
     all.retain(|one| one.contacts > 0);
     if all.is_empty() {
-        return Err(Uncombined::NoContact);
+        return Err(no_contact());
     }
-    let mut all = nearly_complete(receptor, ligand, all);
+    let mut all = nearly_complete(sides, all);
     // By what they are, not by their order in the file.
     all.sort_by_cached_key(|one| {
-        let same_named = receptor.same_named(one.receptor) + ligand.same_named(one.ligand);
-        let names = (receptor.names(one.receptor), ligand.names(one.ligand));
+        let [r, l] = one.placements;
+        let same_named = receptor.same_named(r) + ligand.same_named(l);
+        let names = (receptor.names(r), ligand.names(l));
         (std::cmp::Reverse((same_named, one.contacts)), names)
     });
     let most = all.iter().map(|one| one.contacts).max().unwrap_or(0);
@@ -147,17 +153,10 @@ pub(in crate::evaluate) fn combinations(
 }
 
 /// Those that match of both sides nearly as much as the best, and of these the ones that fit, if any does.
-fn nearly_complete(
-    receptor: PlacedCopy,
-    ligand: PlacedCopy,
-    all: Vec<Combination>,
-) -> Vec<Combination> {
-    let matched = |one: &Combination| {
-        [
-            receptor.placements[one.receptor].matched() as f64,
-            ligand.placements[one.ligand].matched() as f64,
-        ]
-    };
+fn nearly_complete(sides: [PlacedCopy; 2], all: Vec<Combination>) -> Vec<Combination> {
+    let placed =
+        |one: &Combination| [0, 1].map(|side| &sides[side].placements[one.placements[side]]);
+    let matched = |one: &Combination| placed(one).map(|placement| placement.matched() as f64);
     let most = all.iter().map(matched).fold([1.0_f64; 2], |most, one| {
         [most[0].max(one[0]), most[1].max(one[1])]
     });
@@ -167,10 +166,7 @@ fn nearly_complete(
     };
     let best = all.iter().map(share).fold(0.0, f64::max);
     let complete = |one: &Combination| share(one) >= MIN_OF_BEST * best;
-    let fit = |one: &Combination| {
-        receptor.placements[one.receptor].rmsd <= MAX_FIT_RMSD
-            && ligand.placements[one.ligand].rmsd <= MAX_FIT_RMSD
-    };
+    let fit = |one: &Combination| placed(one).iter().all(|side| side.rmsd <= MAX_FIT_RMSD);
     let (fitting, others): (Vec<_>, Vec<_>) = all.into_iter().filter(complete).partition(fit);
     if fitting.is_empty() { others } else { fitting }
 }
@@ -205,9 +201,7 @@ impl<'a> ContactCounts<'a> {
         let [receptors, ligands] = self.sides;
         let ((center, radius), (other, other_radius)) =
             (self.balls[0][receptor], self.balls[1][ligand]);
-        if nalgebra::distance(&center, &other)
-            > radius + other_radius + crate::evaluate::contacts::CONTACT_DISTANCE
-        {
+        if nalgebra::distance(&center, &other) > radius + other_radius + CONTACT_DISTANCE {
             return 0;
         }
         *self.known.entry((receptor, ligand)).or_insert_with(|| {

@@ -78,11 +78,7 @@ fn without(atoms: &[Atom], numbers: std::ops::RangeInclusive<i64>) -> Vec<Atom> 
     kept.cloned().collect()
 }
 
-fn against(
-    receptor: &[Atom],
-    ligand: &[Atom],
-    native: &[Vec<Atom>],
-) -> Result<Evaluator, EvaluateError> {
+fn against(receptor: &[Atom], ligand: &[Atom], native: &[Vec<Atom>]) -> Result<Evaluator, Error> {
     let native: Molecule = molecule(native.concat());
     let [receptor, ligand] = [receptor, ligand].map(|side| molecule(side.to_vec()));
     Evaluator::new(&receptor, &ligand, Native::Complex(&native))
@@ -259,16 +255,11 @@ fn a_peptide_does_not_pass_for_a_longer_ligand() {
         atom.residue_name = name.unwrap().1.into();
     }
     let error = against(&receptor(), &ligand(), &[trypsin, peptide]).unwrap_err();
+    let message = error.message();
     assert!(
-        matches!(
-            error,
-            EvaluateError::DockedShare {
-                side: "ligand",
-                residues: 29,
-                ..
-            } | EvaluateError::Unmatched { side: "ligand" }
-        ),
-        "{error:?}"
+        message.contains("of the docked ligand's 29 residues")
+            || message.contains("sequence of the ligand"),
+        "{error}"
     );
 }
 
@@ -415,7 +406,7 @@ fn names_decide_between_equal_complexes() {
 fn a_single_copy_is_no_native_of_a_homodimer() {
     let [one, _] = bound("A", "I");
     let error = against(&receptor(), &receptor(), &[one]).unwrap_err();
-    assert_eq!(error, EvaluateError::OneCopy);
+    assert!(error.message().contains("only one copy"), "{error}");
 }
 
 /// Found with DNA docked as one chain, as HADDOCK has it, against a native of two strands: the second, of eleven

@@ -5,7 +5,5 @@ pub(super) mod chain_pair;
 pub(super) mod copies;
 #[cfg(test)]
 mod copy_tests;
-pub(super) mod placement;
-mod placement_builder;
 pub(super) mod placements;
 pub(super) mod superposition;

@@ -1,6 +1,6 @@
 //! A molecule as the evaluation sees it: residues of protein or nucleic acid, in file order, in segments.
 //!
-//! A **segment** is what is matched as one chain: the residues of one chain name, in file order, cut where several
+//! A **segment** is matched as one chain: the residues of one chain name, in file order, cut where several
 //! chains were written under one name ([`segments`](crate::evaluate::residues::segments)).
 
 pub(super) mod residue;
@@ -8,9 +8,9 @@ pub(super) mod segments;
 
 use std::collections::HashMap;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{Atom, Molecule};
 
-use crate::evaluate::EvaluateError;
 use crate::evaluate::residues::residue::{LINKING_OXYGEN, PHOSPHATE_BOND, PHOSPHORUS, Residue};
 use crate::evaluate::residues::segments::{in_bonded_order, segments};
 
@@ -55,8 +55,8 @@ impl Residues {
     /// Cofactors, FMN and AMP among them, ions and glycans play no part, as in DockQ.
     ///
     /// # Errors
-    /// [`EvaluateError::NotFinite`] and [`EvaluateError::NoResidues`].
-    pub fn of(molecule: &Molecule, role: &'static str) -> Result<Self, EvaluateError> {
+    /// [`Error`] for coordinates that are not finite, and for a molecule without such residues.
+    pub fn of(molecule: &Molecule, role: &'static str) -> Result<Self, Error> {
         let mut chains: Vec<(&str, Vec<&Atom>)> = Vec::new();
         let mut places: HashMap<&str, usize> = HashMap::new();
         for atom in &molecule.atoms {
@@ -65,10 +65,11 @@ impl Residues {
                 .iter()
                 .all(|coordinate| coordinate.is_finite())
             {
-                return Err(EvaluateError::NotFinite {
-                    molecule: role,
-                    line: atom.line,
-                });
+                return Err(Error::input(format!(
+                    "the {role} has an atom (line {}) whose coordinates are not finite",
+                    atom.line
+                ))
+                .help("correct the coordinates in the file"));
             }
             if atom.element.eq_ignore_ascii_case("H") || atom.element.eq_ignore_ascii_case("D") {
                 continue;
@@ -85,9 +86,29 @@ impl Residues {
             all.add_chain(name, &atoms, &molecule.chain_breaks);
         }
         if all.residues.is_empty() {
-            return Err(EvaluateError::NoResidues { molecule: role });
+            return Err(Error::input(format!(
+                "the {role} has no residue of protein or nucleic acid"
+            ))
+            .help("name chains of protein or nucleic acid; waters, ions and cofactors are not compared"));
         }
         Ok(all)
+    }
+
+    /// The residues with these indices.
+    pub fn at(&self, members: &[usize]) -> Vec<&Residue> {
+        members
+            .iter()
+            .map(|&member| &self.residues[member])
+            .collect()
+    }
+
+    /// Names of the segments that are not used.
+    pub fn unused(&self, is_used: impl Fn(usize) -> bool) -> Vec<String> {
+        let segments = self.segments.iter().enumerate();
+        segments
+            .filter(|&(index, _)| !is_used(index))
+            .map(|(_, segment)| segment.name.clone())
+            .collect()
     }
 
     /// Cuts one chain's atoms into residues and appends them as one or more segments; `ends` are the lines at which
@@ -280,16 +301,16 @@ mod tests {
     fn hydrogens_and_nothing_at_all() {
         let mut hydrogen = atom("A", 1, "ALA", "H", [0.0; 3]);
         hydrogen.element = "H".into();
-        assert!(matches!(
-            Residues::of(&molecule(vec![hydrogen]), "native ligand"),
-            Err(EvaluateError::NoResidues {
-                molecule: "native ligand"
-            })
-        ));
+        let refused = |one, role| Residues::of(&molecule(vec![one]), role).unwrap_err();
+        let error = refused(hydrogen, "native ligand");
+        assert!(
+            error
+                .message()
+                .starts_with("the native ligand has no residue"),
+            "{error}"
+        );
         let lost = atom("A", 1, "ALA", "CA", [0.0, f64::NAN, 0.0]);
-        assert!(matches!(
-            Residues::of(&molecule(vec![lost]), "receptor"),
-            Err(EvaluateError::NotFinite { .. })
-        ));
+        let error = refused(lost, "receptor");
+        assert!(error.message().contains("not finite"), "{error}");
     }
 }

@@ -103,7 +103,7 @@ impl Residue {
 
 /// The name under which residues are compared.
 ///
-/// `name` is what its atoms or its name show it to be ([`standard_residue_name`]). Selenomethionine counts as
+/// `name` is the standard name by its atoms or its own name ([`standard_residue_name`]). Selenomethionine counts as
 /// methionine and S,S-(2-hydroxyethyl)thiocysteine as cysteine, as in DockQ 2.1.3. Other amino acids that are modified
 /// after translation count as their parents (wwPDB Chemical Component Dictionary, `mon_nstd_parent_comp_id`). Names of
 /// force fields count as the plain residue's, and nucleotides as their base ([`plain_residue_name`]).

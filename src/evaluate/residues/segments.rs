@@ -13,8 +13,8 @@
 //!   chains (both copies of a homodimer as 377-576 and 1375-1576, in 1AZS).
 //!
 //! Residues that are bonded to each other are only parted by a leap: files without insertion codes repeat numbers
-//! within a chain. Only a number that comes again makes pieces of less than three residues. A chain that is cut at a
-//! gap of its own does no harm: all its pieces are matched.
+//! within a chain. Only a number that comes again makes pieces of less than three residues. A chain that is cut at
+//! a gap does no harm: all its pieces are matched.
 
 use std::collections::HashSet;
 
@@ -24,7 +24,7 @@ use crate::evaluate::residues::residue::{
 
 /// Smallest step in residue numbers that begins a new segment.
 const LEAP: i64 = 100;
-/// Only if this many residues stand on both sides of it: shorter pieces stay with their chain.
+/// Only with this many residues on both sides of it: shorter pieces stay with their chain.
 const MIN_PIECE: usize = 20;
 
 /// Fewest residues of a chain that does not begin with a number that comes again.
@@ -44,7 +44,7 @@ const SPANS: [f64; 2] = [3.8, 7.5];
 /// Longest gap in Å that numbers with an insertion code may hide: a residue or two that the numbering does not count.
 const UNCOUNTED: f64 = 12.0;
 
-/// Longest gap in residues and in Å that a TER record may stand in without ending the chain.
+/// Longest gap in residues and in Å in which a TER record does not end the chain.
 const MAX_GAP_LENGTH: (i64, f64) = (60, 40.0);
 
 /// Places of CA, C, N and O5' among the backbone atoms.
@@ -63,7 +63,7 @@ enum Link {
     Unknown,
 }
 
-/// What the file shows of missing residues between two that follow each other.
+/// Evidence in the file of unresolved residues between two consecutive ones.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(in crate::evaluate) enum Step {
     /// Bonded, or of consecutive numbers where no atoms show a bond.
@@ -74,7 +74,7 @@ pub(in crate::evaluate) enum Step {
     Broken,
 }
 
-/// What the file shows between two residues of a chain.
+/// Evidence of unresolved residues between two residues of a chain.
 pub(in crate::evaluate) fn step(before: &Residue, after: &Residue) -> Step {
     let consecutive = after.number.0.saturating_sub(before.number.0) <= 1;
     match (link(before, after), consecutive) {

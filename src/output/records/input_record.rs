@@ -27,44 +27,6 @@ pub struct InputRecord {
     pub sha256: String,
 }
 
-/// Why a recorded file cannot be used.
-#[derive(Debug, thiserror::Error)]
-pub enum InputRecordError {
-    /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// The file.
-        path: PathBuf,
-        /// The system's message.
-        source: io::Error,
-    },
-    /// It is no file, and cannot be read a second time.
-    #[error("{} is no file, but a pipe, a device or a handle of the process, which cannot be read again", path.display())]
-    Stream {
-        /// Its name.
-        path: PathBuf,
-    },
-    /// The file is not the one that the run read.
-    #[error("{} has changed since the run: its SHA-256 is {found}, the run's was {expected}", path.display())]
-    Changed {
-        /// The file.
-        path: PathBuf,
-        /// The checksum recorded.
-        expected: String,
-        /// The checksum now.
-        found: String,
-    },
-}
-
-impl InputRecordError {
-    /// The file in question.
-    pub fn path(&self) -> &Path {
-        match self {
-            Self::Read { path, .. } | Self::Stream { path } | Self::Changed { path, .. } => path,
-        }
-    }
-}
-
 impl InputRecord {
     /// Records a file that holds these bytes.
     pub fn new(input: &InputSpec, bytes: &[u8]) -> Self {
@@ -115,8 +77,8 @@ impl InputRecord {
     /// for runs that were moved or copied together with their inputs.
     ///
     /// # Errors
-    /// [`InputRecordError`] of the recorded path when no file with the recorded checksum is there or in the folders.
-    pub fn locate(&self, folders: &[PathBuf]) -> Result<Self, InputRecordError> {
+    /// [`Error`] of the recorded path when no file with the recorded checksum is there or in the folders.
+    pub fn locate(&self, folders: &[PathBuf]) -> Result<Self, Error> {
         let first = match self.verify(&self.path) {
             Ok(()) => return Ok(self.clone()),
             Err(error) => error,
@@ -134,26 +96,34 @@ impl InputRecord {
     }
 
     /// Checks that a file is the one recorded.
-    fn verify(&self, path: &Path) -> Result<(), InputRecordError> {
+    fn verify(&self, path: &Path) -> Result<(), Error> {
+        let refused = |message: String, remedy: &str| {
+            Err(Error::input(format!("{} {message}", path.display()))
+                .at(path)
+                .help(remedy))
+        };
         if is_stream(path) && !path.is_dir() {
             // Opened, a pipe would wait for whoever writes to it.
-            return Err(InputRecordError::Stream {
-                path: path.to_owned(),
-            });
+            return refused(
+                "is no file, but a pipe, a device or a handle of the process, which cannot be read again".to_owned(),
+                "dock again from a file, or put what was read under that name beside the directory of the run",
+            );
         }
-        let found = sha256_of(path).map_err(|source| InputRecordError::Read {
-            path: path.to_owned(),
-            source,
+        let sum = sha256_of(path).map_err(|error| {
+            Error::input(format!("cannot read {}: {error}", path.display()))
+                .at(path)
+                .help("put the file where the run found it, or beside the directory of the run")
         })?;
-        if found == self.sha256 {
-            Ok(())
-        } else {
-            Err(InputRecordError::Changed {
-                path: path.to_owned(),
-                expected: self.sha256.clone(),
-                found,
-            })
+        if sum != self.sha256 {
+            return refused(
+                format!(
+                    "has changed since the run: its SHA-256 is {sum}, the run's was {}",
+                    self.sha256
+                ),
+                "put back the file that the run was made from, or dock again",
+            );
         }
+        Ok(())
     }
 }
 
@@ -195,23 +165,6 @@ impl NativeRecord {
     }
 }
 
-impl From<InputRecordError> for Error {
-    fn from(error: InputRecordError) -> Self {
-        let remedy = match &error {
-            InputRecordError::Read { .. } => {
-                "put the file where the run found it, or beside the directory of the run"
-            }
-            InputRecordError::Stream { .. } => {
-                "dock again from a file, or put what was read under that name beside the directory of the run"
-            }
-            InputRecordError::Changed { .. } => {
-                "put back the file that the run was made from, or dock again"
-            }
-        };
-        Self::input(&error).at(error.path()).help(remedy)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -232,10 +185,8 @@ mod tests {
         let moved = root.path().join("moved");
         fs::create_dir(&moved).unwrap();
         fs::rename(&path, moved.join("input.pdb")).unwrap();
-        assert!(matches!(
-            record.locate(&[root.path().to_owned()]),
-            Err(InputRecordError::Read { .. })
-        ));
+        let error = record.locate(&[root.path().to_owned()]).unwrap_err();
+        assert!(error.message().starts_with("cannot read"), "{error}");
         assert_eq!(
             record
                 .locate(&[root.path().to_owned(), moved.clone()])
@@ -244,9 +195,8 @@ mod tests {
             moved.join("input.pdb")
         );
         fs::write(&path, "abd").unwrap();
-        assert!(matches!(
-            record.locate(&[root.path().to_owned()]),
-            Err(InputRecordError::Changed { .. })
-        ));
+        let error = record.locate(&[root.path().to_owned()]).unwrap_err();
+        assert!(error.message().contains("has changed"), "{error}");
+        assert_eq!(error.file(), Some(path.as_path()));
     }
 }

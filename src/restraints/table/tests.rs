@@ -2,15 +2,14 @@
 
 use super::*;
 use crate::restraints::CROSSLINKS;
-use crate::table_text::named_columns::TableFault;
 use crate::test_molecules::molecules;
 
-fn read_with(text: &str, crosslink: Option<Crosslink>) -> Result<Vec<NamedRestraint>, Located> {
+fn read_with(text: &str, crosslink: Option<Crosslink>) -> Result<Vec<NamedRestraint>, Error> {
     let [receptor, ligand] = molecules();
     parse(text.into(), [&receptor, &ligand], crosslink)
 }
 
-fn read(text: &str) -> Result<Vec<NamedRestraint>, Located> {
+fn read(text: &str) -> Result<Vec<NamedRestraint>, Error> {
     read_with(text, None)
 }
 
@@ -190,17 +189,19 @@ fn malformed_tables_are_refused_by_line() {
         ),
     ] {
         let error = read(text).unwrap_err();
-        assert_eq!((error.line, error.column), (Some(line), None), "{text:?}");
-        let said = error.fault.to_string();
-        assert!(said.starts_with(message), "{text:?}: {said}");
-        assert!(!error.fault.remedy().is_empty());
+        assert_eq!(error.line(), Some(line), "{text:?}");
+        assert!(error.message().starts_with(message), "{text:?}: {error}");
+        assert!(error.remedy().is_some());
     }
 }
 
 #[test]
 fn the_remedy_for_columns_names_all() {
-    let remedy = RestraintFault::from(TableFault::UnknownColumn(String::new())).remedy();
-    assert!(remedy.contains(&COLUMNS.join(", ")), "{remedy}");
+    let error = read("receptor,ligand,weight\n").unwrap_err();
+    assert!(
+        error.remedy().unwrap().contains(&COLUMNS.names.join(", ")),
+        "{error}"
+    );
 }
 
 /// Rows of ambiguous restraints name few residues many times, and a look-up goes through all atoms.

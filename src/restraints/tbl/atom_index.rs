@@ -1,4 +1,4 @@
-//! The atoms of receptor and ligand, found by what selections test: each test looks at distinct names and numbers, not
+//! The atoms of receptor and ligand, by chain, residue and name: each test looks at distinct names and numbers, not
 //! at atoms.
 
 use std::collections::{BTreeMap, BTreeSet};

@@ -1,4 +1,4 @@
-//! Selections of atoms: what stands between the parentheses of an assign statement.
+//! Selections of atoms, between the parentheses of an assign statement.
 //!
 //! ```text
 //! selection = "(" any-of ")"
@@ -14,10 +14,12 @@
 
 use std::collections::{BTreeMap, BTreeSet};
 
-use crate::restraints::error::{Located, RestraintFault};
+use knotdock_structures::Error;
+
 use crate::restraints::tbl::atom_index::{AtomIndex, ResidueNumber};
 use crate::restraints::tbl::name_pattern::NamePattern;
-use crate::restraints::tbl::tokens::{Place, Token, Tokens};
+use crate::restraints::tbl::tokens::{Place, Token, Tokens, unexpected};
+use crate::table_text::named_columns::shortened;
 
 /// Most parentheses and `not` within each other: a recursion without a bound would run out of stack.
 const MAX_DEPTH: usize = 100;
@@ -150,30 +152,29 @@ impl<'a> Selections<'a> {
     }
 
     /// The next token, which must be there.
-    pub(super) fn need(&mut self, expected: &'static str) -> Result<(Token<'a>, Place), Located> {
+    pub(super) fn need(&mut self, expected: &'static str) -> Result<(Token<'a>, Place), Error> {
         let end = self.tokens.place();
-        self.tokens.next()?.ok_or_else(|| {
-            let found = "the end of the file".to_owned();
-            end.fault(RestraintFault::Syntax { expected, found })
-        })
+        self.tokens
+            .next()?
+            .ok_or_else(|| end.fault(unexpected(expected, "the end of the file")))
     }
 
     /// The selection that follows, and the place of its parenthesis.
-    pub(super) fn selection(&mut self) -> Result<(Expression, Place), Located> {
+    pub(super) fn selection(&mut self) -> Result<(Expression, Place), Error> {
         const EXPECTED: &str = "a selection in parentheses";
         match self.need(EXPECTED)? {
             (Token::Open, place) => {
                 let expression = self.any_of(1, place)?;
                 Ok((expression, place))
             }
-            (token, place) => Err(unexpected(EXPECTED, token, place)),
+            (token, place) => Err(place.fault(unexpected(EXPECTED, &token.shown()))),
         }
     }
 
-    /// What stands between parentheses, and the one that closes.
-    fn any_of(&mut self, depth: usize, open: Place) -> Result<Expression, Located> {
+    /// The expression between parentheses, and the one that closes.
+    fn any_of(&mut self, depth: usize, open: Place) -> Result<Expression, Error> {
         if depth > MAX_DEPTH {
-            return Err(open.fault(RestraintFault::Nesting(MAX_DEPTH)));
+            return Err(open.fault(too_deep()));
         }
         // Alternatives, each as what must hold at once.
         let mut alternatives = Vec::new();
@@ -193,12 +194,12 @@ impl<'a> Selections<'a> {
                 alternatives.push(joined(all_of, Expression::And));
                 return Ok(joined(alternatives, Expression::Or));
             } else {
-                return Err(unexpected(expected, token, place));
+                return Err(place.fault(unexpected(expected, &token.shown())));
             }
         }
     }
 
-    fn factor(&mut self, depth: usize) -> Result<Expression, Located> {
+    fn factor(&mut self, depth: usize) -> Result<Expression, Error> {
         let expected = "a test such as `resid 10`";
         let (token, place) = self.need(expected)?;
         if token == Token::Open {
@@ -206,7 +207,7 @@ impl<'a> Selections<'a> {
         }
         if token.is_keyword("not") {
             if depth >= MAX_DEPTH {
-                return Err(place.fault(RestraintFault::Nesting(MAX_DEPTH)));
+                return Err(place.fault(too_deep()));
             }
             return Ok(Expression::Not(Box::new(self.factor(depth + 1)?)));
         }
@@ -236,20 +237,20 @@ impl<'a> Selections<'a> {
             ];
             return Ok(Expression::And(tests));
         }
-        Err(unexpected(expected, token, place))
+        Err(place.fault(unexpected(expected, &token.shown())))
     }
 
     /// A name that follows.
-    fn name(&mut self, expected: &'static str) -> Result<NamePattern, Located> {
+    fn name(&mut self, expected: &'static str) -> Result<NamePattern, Error> {
         match self.need(expected)? {
             (Token::Word(word), _) => Ok(NamePattern::new(word)),
             (Token::Quoted(word), _) => Ok(NamePattern::literal(word)),
-            (token, place) => Err(unexpected(expected, token, place)),
+            (token, place) => Err(place.fault(unexpected(expected, &token.shown()))),
         }
     }
 
     /// A chain: in its own case where one is called so, else in any case.
-    fn chain(&mut self) -> Result<Expression, Located> {
+    fn chain(&mut self) -> Result<Expression, Error> {
         let name = self.name("the name of a chain")?;
         // Where a chain has no name reports say `_`.
         let name = if name == NamePattern::new("_") && !self.chains.contains("_") {
@@ -263,18 +264,18 @@ impl<'a> Selections<'a> {
     }
 
     /// Residues by number: one or, where it may be, a range.
-    fn residue(&mut self, may_be_range: bool) -> Result<Expression, Located> {
+    fn residue(&mut self, may_be_range: bool) -> Result<Expression, Error> {
         const EXPECTED: &str = "the number of a residue";
         let (token, place) = self.need(EXPECTED)?;
         let (word, pattern) = match token {
             Token::Word(word) => (word, NamePattern::new(word)),
             Token::Quoted(word) => (word, NamePattern::literal(word)),
-            token => return Err(unexpected(EXPECTED, token, place)),
+            token => return Err(place.fault(unexpected(EXPECTED, &token.shown()))),
         };
         if may_be_range && self.tokens.skip_colon()? {
             let (last, last_place) = match self.need(EXPECTED)? {
                 (Token::Word(last) | Token::Quoted(last), place) => (last, place),
-                (token, place) => return Err(unexpected(EXPECTED, token, place)),
+                (token, place) => return Err(place.fault(unexpected(EXPECTED, &token.shown()))),
             };
             let range = [number(word), number(last)];
             return match range {
@@ -284,7 +285,10 @@ impl<'a> Selections<'a> {
                 _ => {
                     let end = last_place.byte + last.len();
                     let written = self.tokens.between(place.byte, end);
-                    Err(place.fault(RestraintFault::range(written)))
+                    Err(place.fault(
+                        Error::input(format!("`{}` is no range of residues", shortened(written)))
+                            .help("give the first residue before the last, as in `resid 10:20`"),
+                    ))
                 }
             };
         }
@@ -318,8 +322,10 @@ fn number(text: &str) -> Option<ResidueNumber> {
     Some((number, Some(insertion.to_ascii_uppercase())))
 }
 
-/// The fault of a token that does not belong where it is.
-pub(super) fn unexpected(expected: &'static str, found: Token<'_>, place: Place) -> Located {
-    let found = found.shown();
-    place.fault(RestraintFault::Syntax { expected, found })
+/// A selection with too many parentheses and `not` within each other.
+fn too_deep() -> Error {
+    Error::input(format!(
+        "the selection is nested more than {MAX_DEPTH} deep"
+    ))
+    .help("leave out parentheses that are not needed")
 }

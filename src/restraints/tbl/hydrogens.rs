@@ -1,7 +1,7 @@
 //! Bounds for heavy atoms in place of bounds for all atoms.
 //!
 //! HADDOCK and CNS sum d^-6 over hydrogens, too, which are not read here. So the effective distance of heavy atoms is
-//! longer than theirs, and a bound of theirs has to be widened.
+//! longer than theirs, and their bounds have to be widened.
 //!
 //! # Derivation
 //!
@@ -15,7 +15,7 @@
 //! | heavy, hydrogen | (1 + β²) / (1 - β²)^4 |
 //! | hydrogen, hydrogen | (1 - x²/2 + x⁴/6) / (1 - x²)³ |
 //!
-//! The sum of the four, F(D), is what the hydrogens multiply a sum of d^-6 by. It falls from 7.2 at contact to 4 far
+//! The sum of the four, F(D), is the factor of a sum of d^-6 by the hydrogens. It falls from 7.2 at contact to 4 far
 //! away: the effective distance falls by F^(1/6), which is 1.39 to 1.26. So a bound u for all atoms is the bound
 //! U = u F(D)^(1/6) for heavy atoms.
 //!

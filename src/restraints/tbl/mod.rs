@@ -33,32 +33,28 @@ mod tokens;
 
 use std::collections::HashSet;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
-use self::expression::{Selections, unexpected};
+use self::expression::Selections;
 use self::hydrogens::widened;
 use self::sides::{Selected, Sides};
-use self::tokens::{Place, Token};
-use crate::restraints::bounds::{Bounds, distance};
-use crate::restraints::error::{Located, RestraintFault};
-use crate::restraints::restraint::{FileRestraints, NamedRestraint, SelectedAtoms, TblBounds};
+use self::tokens::{Place, Token, unexpected};
+use crate::restraints::restraint::{
+    Bounds, FileRestraints, NamedRestraint, SelectedAtoms, TblBounds, distance,
+};
 use crate::table_text::named_columns::shortened;
 
-/// What may stand behind the distances with a number, and says nothing of them.
+/// Keywords with a number after the distances, which have no effect on them.
 const PASSED_OVER: [&str; 6] = ["peak", "spectrum", "volume", "ppm1", "ppm2", "cv"];
 
 /// The restraints of a file. Lines end with LF.
 pub(super) fn parse(
-    bytes: Vec<u8>,
+    text: &str,
     molecules: [&Molecule; 2],
     bounds: TblBounds,
-) -> Result<FileRestraints, Located> {
-    let text = String::from_utf8(bytes).map_err(|_| {
-        Located::in_file(RestraintFault::Unreadable(
-            "it is not text in UTF-8".to_owned(),
-        ))
-    })?;
-    let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+) -> Result<FileRestraints, Error> {
+    let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let sides = Sides::new(molecules);
     let mut statements = Statements {
         selections: Selections::new(text, sides.all_chains()),
@@ -69,11 +65,8 @@ pub(super) fn parse(
     let (mut list, mut within) = (Vec::new(), Vec::new());
     while let Some((token, place)) = statements.selections.tokens.next()? {
         if !token.is_keyword("assign") {
-            return Err(unexpected(
-                "a statement that begins with `assign`",
-                token,
-                place,
-            ));
+            let expected = "a statement that begins with `assign`";
+            return Err(place.fault(unexpected(expected, &token.shown())));
         }
         let name = format!("restraint {}", list.len() + within.len() + 1);
         match statements.assign(name, place)? {
@@ -83,7 +76,17 @@ pub(super) fn parse(
     }
     match within.first() {
         Some(place) if list.is_empty() => {
-            Err(place.fault(RestraintFault::WithinOneMolecule(within.len())))
+            let which = match within.len() {
+                1 => "the restraint is".to_owned(),
+                count => format!("all {count} restraints are"),
+            };
+            let error = Error::input(format!(
+                "{which} within one molecule, which docking does not change"
+            ));
+            Err(place.fault(error.help(
+                "select atoms of the receptor in one and of the ligand in the other: rigid docking keeps distances \
+                 within a molecule",
+            )))
         }
         _ => Ok(FileRestraints {
             list,
@@ -105,7 +108,7 @@ type Pair = ([Vec<usize>; 2], usize);
 
 impl Statements<'_> {
     /// The statement behind `assign`, which is at `place`; `None` if it is, or may be, within one molecule.
-    fn assign(&mut self, name: String, place: Place) -> Result<Option<NamedRestraint>, Located> {
+    fn assign(&mut self, name: String, place: Place) -> Result<Option<NamedRestraint>, Error> {
         let mut alternatives = vec![self.pair()?];
         let bounds = Bounds::about(
             self.distance("the distance")?,
@@ -128,7 +131,14 @@ impl Statements<'_> {
             } else if tokens.skip_keyword(&["weight"])?.is_some() {
                 let (weight, text, place) = self.number("a weight")?;
                 if weight != 1.0 {
-                    return Err(place.fault(RestraintFault::Weight(shortened(text))));
+                    let message = format!(
+                        "the weight is `{}`; all restraints count alike",
+                        shortened(text)
+                    );
+                    return Err(place.fault(
+                        Error::input(message)
+                            .help("leave the weight out, or leave out the whole statement"),
+                    ));
                 }
             } else if tokens.skip_keyword(&PASSED_OVER)?.is_some() {
                 self.number("a number")?;
@@ -156,7 +166,7 @@ impl Statements<'_> {
     }
 
     /// Two selections; `None` if they are of one molecule.
-    fn pair(&mut self) -> Result<Option<Pair>, Located> {
+    fn pair(&mut self) -> Result<Option<Pair>, Error> {
         let (first, place) = self.selection()?;
         let (second, _) = self.selection()?;
         if first.side == second.side {
@@ -175,7 +185,7 @@ impl Statements<'_> {
     }
 
     /// One selection, and where it begins.
-    fn selection(&mut self) -> Result<(Selected, Place), Located> {
+    fn selection(&mut self) -> Result<(Selected, Place), Error> {
         let (expression, place) = self.selections.selection()?;
         let tokens = &self.selections.tokens;
         let written = || shortened(tokens.between(place.byte, tokens.place().byte));
@@ -185,22 +195,23 @@ impl Statements<'_> {
     }
 
     /// A distance that follows.
-    fn distance(&mut self, what: &'static str) -> Result<f64, Located> {
+    fn distance(&mut self, what: &'static str) -> Result<f64, Error> {
         let expected = "three distances behind the two selections";
         match self.selections.need(expected)? {
             (Token::Word(word), place) => distance(what, word).map_err(|fault| place.fault(fault)),
-            (token, place) => Err(unexpected(expected, token, place)),
+            (token, place) => Err(place.fault(unexpected(expected, &token.shown()))),
         }
     }
 
     /// A number that follows, as written and where.
-    fn number(&mut self, expected: &'static str) -> Result<(f64, &str, Place), Located> {
+    fn number(&mut self, expected: &'static str) -> Result<(f64, &str, Place), Error> {
         let (token, place) = self.selections.need(expected)?;
         let number = match token {
             Token::Word(word) => word.parse().ok().map(|number| (number, word)),
             _ => None,
         };
-        let (number, word) = number.ok_or_else(|| unexpected(expected, token, place))?;
+        let (number, word) =
+            number.ok_or_else(|| place.fault(unexpected(expected, &token.shown())))?;
         Ok((number, word, place))
     }
 }

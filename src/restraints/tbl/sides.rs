@@ -2,10 +2,10 @@
 
 use std::collections::BTreeSet;
 
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
-use crate::restraints::error::RestraintFault;
-use crate::restraints::side_atoms::{heavy, residue};
+use crate::restraints::side_atoms::{NO_ATOM, heavy, residue};
 use crate::restraints::tbl::atom_index::AtomIndex;
 use crate::restraints::tbl::expression::{Expression, Tested};
 use crate::table_text::named_columns::listed;
@@ -23,7 +23,7 @@ pub(super) struct Selected {
     pub(super) side: usize,
     /// Its atoms, rising.
     pub(super) atoms: Vec<usize>,
-    /// Whether HADDOCK would count hydrogens of theirs, too.
+    /// Whether HADDOCK would count hydrogens bonded to them, too.
     pub(super) has_hydrogens: bool,
 }
 
@@ -50,7 +50,7 @@ impl<'a> Sides<'a> {
         &self,
         expression: &Expression,
         written: impl Fn() -> String,
-    ) -> Result<Selected, RestraintFault> {
+    ) -> Result<Selected, Error> {
         let chosen = expression.select(&self.index, Tested::Atoms);
         let chosen: [&[bool]; 2] = chosen.split_at(self.index.receptor).into();
         let [receptor, ligand] = [0, 1].map(|side| {
@@ -67,26 +67,35 @@ impl<'a> Sides<'a> {
         let names = [chain_names(0, &receptor), chain_names(1, &ligand)];
         let is_shared = |chain: &&&str| self.chains.iter().all(|chains| chains.contains(**chain));
         if let Some(shared) = names.iter().flatten().find(is_shared) {
-            return Err(RestraintFault::SharedChain {
-                selection: written(),
-                chain: shown(shared).to_owned(),
-            });
+            let (selection, chain) = (written(), shown(shared));
+            return Err(Error::input(format!(
+                "{selection} selects atoms of chain {chain}, and both receptor and ligand have a chain of that name"
+            ))
+            .help(
+                "give the restraints as a CSV table, whose columns say the side, or rename the chain of one molecule",
+            ));
         }
         match (receptor.is_empty(), ligand.is_empty()) {
             (false, true) => Ok(self.selected(0, receptor, expression)),
             (true, false) => Ok(self.selected(1, ligand, expression)),
-            (false, false) => Err(RestraintFault::BothSides {
-                selection: written(),
-                chains: names.map(|names| in_words(&names)),
-            }),
-            (true, true) => Err(RestraintFault::NoAtom {
-                selection: written(),
-                present: self.present(expression),
-            }),
+            (false, false) => {
+                let [receptor, ligand] = names.map(|names| in_words(&names));
+                Err(Error::input(format!(
+                    "{} selects atoms of both molecules: of the receptor's {receptor} and the ligand's {ligand}",
+                    written()
+                ))
+                .help("name the chain of one of the two, as in `segid A`"))
+            }
+            (true, true) => Err(Error::input(format!(
+                "{} selects no atom; {}",
+                written(),
+                self.present(expression)
+            ))
+            .help(NO_ATOM)),
         }
     }
 
-    /// The atoms of a side, with whether the selection holds hydrogens of theirs, in the file or not.
+    /// The atoms of a side, with whether the selection holds hydrogens bonded to them, in the file or not.
     fn selected(&self, side: usize, atoms: Vec<usize>, expression: &Expression) -> Selected {
         let carries = expression.select(&self.index, Tested::Hydrogens);
         let first = [0, self.index.receptor][side];

@@ -3,14 +3,14 @@
 use super::*;
 use crate::test_molecules::molecules;
 
-fn read(text: &str) -> Result<Vec<NamedRestraint>, Located> {
+fn read(text: &str) -> Result<Vec<NamedRestraint>, Error> {
     let [receptor, ligand] = molecules();
-    let read = parse(text.into(), [&receptor, &ligand], TblBounds::Written)?;
+    let read = parse(text, [&receptor, &ligand], TblBounds::Written)?;
     Ok(read.list)
 }
 
 /// The atoms of a selection of the receptor, by residue and name.
-fn chosen(selection: &str) -> Result<Vec<String>, Located> {
+fn chosen(selection: &str) -> Result<Vec<String>, Error> {
     let [receptor, _] = molecules();
     let restraints = read(&format!("assign {selection} (segid B) 3 3 0"))?;
     let [atoms, _] = &restraints[0].pairs[0];
@@ -335,10 +335,15 @@ fn malformed_files_are_refused_by_line_and_column() {
     ] {
         let error = read(text).unwrap_err();
         let shown = text.get(..80).unwrap_or(text);
-        assert_eq!([error.line, error.column], place.map(Some), "{shown}");
-        let said = error.fault.to_string();
-        assert!(said.starts_with(message), "{shown}: {said}");
-        assert!(!error.fault.remedy().is_empty());
+        let [line, column] = place;
+        assert_eq!(error.line(), Some(line), "{shown}");
+        let message_with_place = error.message();
+        assert!(message_with_place.starts_with(message), "{shown}: {error}");
+        assert!(
+            message_with_place.ends_with(&format!("(column {column})")),
+            "{shown}: {error}"
+        );
+        assert!(error.remedy().is_some());
     }
 }
 
@@ -351,12 +356,12 @@ fn restraints_within_a_molecule_are_left_out() {
         assign (segid A and resid 10) (segid B and resid 20) 2 2 0\n\
         assign (segid B and resid 20) (segid B and resid 21) 2 2 0 or (segid A) (segid B)\n\
         assign (segid A) (segid B) 2 2 0 or (segid D) (segid A)";
-    let read = parse(text.into(), [&receptor, &ligand], TblBounds::Written).unwrap();
+    let read = parse(text, [&receptor, &ligand], TblBounds::Written).unwrap();
     assert_eq!((read.list.len(), read.within_one_molecule), (1, 3));
     // By its place in the file.
     assert_eq!(read.list[0].name, "restraint 2");
     let faulty = format!("{text}\nassign (segid A) (segid D) 2 x 0");
-    assert!(parse(faulty.into(), [&receptor, &ligand], TblBounds::Written).is_err());
+    assert!(parse(&faulty, [&receptor, &ligand], TblBounds::Written).is_err());
 }
 
 /// Bounds are widened for the hydrogens that a selection holds, not for those that it leaves out.
@@ -365,7 +370,7 @@ fn bounds_are_widened_for_the_hydrogens_selected() {
     let [receptor, ligand] = molecules();
     let upper = |first: &str, second: &str, bounds: TblBounds| {
         let text = format!("assign {first} {second} 2 2 0");
-        let read = parse(text.into(), [&receptor, &ligand], bounds).unwrap();
+        let read = parse(&text, [&receptor, &ligand], bounds).unwrap();
         assert_eq!((read.list[0].lower, read.list[0].written_upper), (0.0, 2.0));
         read.list[0].upper
     };
@@ -398,7 +403,7 @@ fn bounds_are_widened_for_the_hydrogens_selected() {
     );
     // One alternative with hydrogens is enough.
     let text = format!("assign (segid A and name CA) {alpha} 2 2 0 or {whole} (segid B)");
-    let read = parse(text.into(), [&receptor, &ligand], TblBounds::Widened).unwrap();
+    let read = parse(&text, [&receptor, &ligand], TblBounds::Widened).unwrap();
     assert_eq!(read.list[0].upper, widened(2.0, 2));
 }
 

@@ -1,6 +1,7 @@
 //! Words and signs of a `.tbl` file, with their places.
 
-use crate::restraints::error::{Located, RestraintFault};
+use knotdock_structures::Error;
+
 use crate::table_text::named_columns::shortened;
 
 /// A word or a sign.
@@ -11,7 +12,7 @@ pub(super) enum Token<'a> {
     Colon,
     /// A keyword, a name or a number.
     Word(&'a str),
-    /// What stands between double quotes: wildcards in it are plain characters.
+    /// A word between double quotes: wildcards in it are plain characters.
     Quoted(&'a str),
 }
 
@@ -38,26 +39,39 @@ impl Token<'_> {
     }
 }
 
-/// Where a token begins.
+/// Place of a token in the text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Place {
     /// Byte of the text.
     pub(super) byte: usize,
     /// 1-based line.
-    pub(super) line: usize,
+    pub(super) line: u64,
     /// 1-based character of the line.
     pub(super) column: usize,
 }
 
 impl Place {
-    /// A fault here.
-    pub(super) fn fault(self, fault: RestraintFault) -> Located {
-        Located {
-            line: Some(self.line),
-            column: Some(self.column),
-            fault,
-        }
+    /// An error with this place.
+    pub(super) fn fault(self, error: Error) -> Error {
+        let message = format!("{error} (column {})", self.column);
+        Error::input(message)
+            .on_line(self.line)
+            .help(error.remedy().unwrap_or_default())
     }
+}
+
+/// Something else than a statement needs.
+pub(super) fn unexpected(expected: &str, found: &str) -> Error {
+    Error::input(format!("there must be {expected}, not {found}")).help(
+        "write `assign (selection) (selection) distance minus plus`. A selection is made of resid, resname, name, \
+         segid, chain, atom, hydrogen, all, and, or, not and parentheses",
+    )
+}
+
+/// A comment or a quoted word that does not end.
+fn unclosed(what: &str) -> Error {
+    Error::input(format!("the {what} that begins here does not end"))
+        .help("close it: a comment with }, a quoted word with \" on its line")
 }
 
 /// Reads tokens one by one: a list of all would be many times as large as the file.
@@ -82,13 +96,13 @@ impl<'a> Tokens<'a> {
         self.text.get(from..to).unwrap_or_default()
     }
 
-    /// Where the last token ended.
+    /// End of the last token.
     pub(super) fn place(&self) -> Place {
         self.place
     }
 
     /// The next token and its place; none at the end.
-    pub(super) fn next(&mut self) -> Result<Option<(Token<'a>, Place)>, Located> {
+    pub(super) fn next(&mut self) -> Result<Option<(Token<'a>, Place)>, Error> {
         self.skip_blanks()?;
         let place = self.place;
         let Some(first) = self.rest().chars().next() else {
@@ -100,10 +114,7 @@ impl<'a> Tokens<'a> {
             ':' => self.sign(Token::Colon),
             '"' => self.quoted()?,
             '}' => {
-                return Err(place.fault(RestraintFault::Syntax {
-                    expected: "a { before it",
-                    found: "`}`".to_owned(),
-                }));
+                return Err(place.fault(unexpected("a { before it", "`}`")));
             }
             _ => Token::Word(self.take_until(|c| c.is_whitespace() || "():\"!{}=".contains(c))),
         };
@@ -111,7 +122,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// Passes over a colon, if one comes next.
-    pub(super) fn skip_colon(&mut self) -> Result<bool, Located> {
+    pub(super) fn skip_colon(&mut self) -> Result<bool, Error> {
         let before = self.place;
         self.skip_blanks()?;
         let is_colon = self.rest().starts_with(':');
@@ -127,7 +138,7 @@ impl<'a> Tokens<'a> {
     pub(super) fn skip_keyword(
         &mut self,
         keywords: &[&'static str],
-    ) -> Result<Option<&'static str>, Located> {
+    ) -> Result<Option<&'static str>, Error> {
         let before = self.place;
         if let Some((token, _)) = self.next()? {
             let mut keywords = keywords.iter();
@@ -140,7 +151,7 @@ impl<'a> Tokens<'a> {
     }
 
     /// Passes over blanks and comments. `=` is a blank, too: `resid = 10` is `resid 10`.
-    fn skip_blanks(&mut self) -> Result<(), Located> {
+    fn skip_blanks(&mut self) -> Result<(), Error> {
         loop {
             let place = self.place;
             match self.rest().chars().next() {
@@ -150,7 +161,7 @@ impl<'a> Tokens<'a> {
                 Some('{') => {
                     self.take_until(|c| c == '}');
                     if self.rest().is_empty() {
-                        return Err(place.fault(RestraintFault::Unclosed("comment")));
+                        return Err(place.fault(unclosed("comment")));
                     }
                     self.step();
                 }
@@ -161,12 +172,12 @@ impl<'a> Tokens<'a> {
     }
 
     /// A word in quotes, which ends on its line.
-    fn quoted(&mut self) -> Result<Token<'a>, Located> {
+    fn quoted(&mut self) -> Result<Token<'a>, Error> {
         let place = self.place;
         self.step();
         let word = self.take_until(|c| c == '"' || c == '\n');
         if !self.rest().starts_with('"') {
-            return Err(place.fault(RestraintFault::Unclosed("quoted word")));
+            return Err(place.fault(unclosed("quoted word")));
         }
         self.step();
         Ok(Token::Quoted(word.trim()))
@@ -209,11 +220,11 @@ impl<'a> Tokens<'a> {
 mod tests {
     use super::*;
 
-    fn all(text: &str) -> Result<Vec<(Token<'_>, [usize; 2])>, Located> {
+    fn all(text: &str) -> Result<Vec<(Token<'_>, (u64, usize))>, Error> {
         let mut tokens = Tokens::new(text);
         let mut all = Vec::new();
         while let Some((token, place)) = tokens.next()? {
-            all.push((token, [place.line, place.column]));
+            all.push((token, (place.line, place.column)));
         }
         Ok(all)
     }
@@ -222,33 +233,36 @@ mod tests {
     fn words_and_signs_have_places() {
         let text = "assign!(x\n {a\n) !} (resid=10:20)\"A :(\" é O5'";
         let expected = [
-            (Token::Word("assign"), [1, 1]),
-            (Token::Open, [3, 6]),
-            (Token::Word("resid"), [3, 7]),
-            (Token::Word("10"), [3, 13]),
-            (Token::Colon, [3, 15]),
-            (Token::Word("20"), [3, 16]),
-            (Token::Close, [3, 18]),
-            (Token::Quoted("A :("), [3, 19]),
-            (Token::Word("é"), [3, 26]),
-            (Token::Word("O5'"), [3, 28]),
+            (Token::Word("assign"), (1, 1)),
+            (Token::Open, (3, 6)),
+            (Token::Word("resid"), (3, 7)),
+            (Token::Word("10"), (3, 13)),
+            (Token::Colon, (3, 15)),
+            (Token::Word("20"), (3, 16)),
+            (Token::Close, (3, 18)),
+            (Token::Quoted("A :("), (3, 19)),
+            (Token::Word("é"), (3, 26)),
+            (Token::Word("O5'"), (3, 28)),
         ];
         assert_eq!(all(text).unwrap(), expected);
     }
 
     #[test]
     fn what_does_not_end_is_refused_where_it_begins() {
-        for (text, place, fault) in [
-            ("a {b\nc", [1, 3], RestraintFault::Unclosed("comment")),
+        for (text, line, message) in [
+            (
+                "a {b\nc",
+                1,
+                "the comment that begins here does not end (column 3)",
+            ),
             (
                 "a\n \"b\n\"",
-                [2, 2],
-                RestraintFault::Unclosed("quoted word"),
+                2,
+                "the quoted word that begins here does not end (column 2)",
             ),
         ] {
             let error = all(text).unwrap_err();
-            assert_eq!([error.line, error.column], place.map(Some));
-            assert_eq!(error.fault, fault);
+            assert_eq!((error.line(), error.message()), (Some(line), message));
         }
         assert!(all("}").is_err());
     }

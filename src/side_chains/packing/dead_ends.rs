@@ -4,8 +4,7 @@
 //! E(r) - E(t) + sum_j min_s (E(r, s) - E(t, s)) > 0, over the states s of the other sites j. The search ends when a
 //! pass over all sites finds none. Source: Goldstein, Biophys. J. 66 (1994) 1335-1340.
 
-use super::site_tables::{SiteTable, site_tables};
-use super::{Problem, TIE};
+use super::{Problem, SiteTable, TIE, site_tables};
 
 /// The states of each site that are left, rising.
 pub(super) fn survivors(problem: &Problem) -> Vec<Vec<usize>> {

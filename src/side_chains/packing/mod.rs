@@ -9,15 +9,15 @@
 mod annealing;
 mod dead_ends;
 mod elimination;
-mod numbers;
-mod site_tables;
 #[cfg(test)]
 mod tests;
+
+use annealing::Component;
 
 /// Energies that differ by less than this are equal (the unit of the energies).
 const TIE: f64 = 1e-9;
 
-/// Sites, their states and what these cost.
+/// Sites, their states and the energies of these.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Problem {
     /// Energy of each state of each site by itself.
@@ -72,7 +72,7 @@ impl Problem {
                 }
             } else {
                 improved += 1;
-                annealing::improve(self, &sites, &alive, &mut states);
+                Component::new(self, &sites, &alive).improve(&mut states);
             }
         }
         Solution {
@@ -128,4 +128,39 @@ impl Problem {
             .filter(|sites| !sites.is_empty())
             .collect()
     }
+}
+
+/// Energies of a site's states with those of another, the other's running fastest.
+struct SiteTable {
+    other: usize,
+    columns: usize,
+    energies: Vec<f64>,
+}
+
+impl SiteTable {
+    /// The energies of one state with all of the other's.
+    fn row(&self, state: usize) -> &[f64] {
+        &self.energies[state * self.columns..][..self.columns]
+    }
+}
+
+/// Each site's tables.
+fn site_tables(problem: &Problem) -> Vec<Vec<SiteTable>> {
+    let mut tables: Vec<Vec<SiteTable>> = problem.own.iter().map(|_| Vec::new()).collect();
+    for pair in &problem.pairs {
+        let [a, b] = pair.sites;
+        let (rows, columns) = (problem.own[a].len(), problem.own[b].len());
+        let transposed = (0..rows * columns).map(|k| pair.energies[k % rows * columns + k / rows]);
+        tables[b].push(SiteTable {
+            other: a,
+            columns: rows,
+            energies: transposed.collect(),
+        });
+        tables[a].push(SiteTable {
+            other: b,
+            columns,
+            energies: pair.energies.clone(),
+        });
+    }
+    tables
 }

@@ -1,4 +1,4 @@
-use super::numbers::Numbers;
+use super::annealing::Numbers;
 use super::*;
 
 /// Up to `sites` sites of up to `states` states; two of them share energies by a chance of `density`.

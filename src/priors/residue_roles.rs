@@ -9,7 +9,7 @@ use knotdock_structures::molecule::{Molecule, ResidueSelection};
 
 /// Roles of the atoms of both sides in contacts.
 #[derive(Clone, Debug, Default, PartialEq)]
-pub(crate) struct Restraints {
+pub(crate) struct ResidueRoles {
     /// Role of each atom of receptor and ligand.
     pub roles: [Vec<ResidueRole>; 2],
     /// Active residues of receptor and ligand, each as the indices of its atoms.
@@ -18,7 +18,7 @@ pub(crate) struct Restraints {
     pub reason: String,
 }
 
-impl Restraints {
+impl ResidueRoles {
     /// Roles by the options and by the exclusive sites of two molecules. Residues that are both blocked and active
     /// are active.
     ///
@@ -29,30 +29,39 @@ impl Restraints {
         sites: [&[Site]; 2],
         options: &DockOptions,
     ) -> Result<Self, Error> {
-        let mut restraints = Self::default();
+        let named = &options.restraints;
+        let blocked = [&named.block_receptor, &named.block_ligand];
+        let active = [&named.active_receptor, &named.active_ligand];
+        let mut all = Self::default();
         let mut reasons = Vec::new();
-        for (side, named) in named_residues(options).into_iter().enumerate() {
+        for (side, name) in ["receptor", "ligand"].into_iter().enumerate() {
             let molecule = molecules[side];
             let mut roles = vec![ResidueRole::Free; molecule.atoms.len()];
-            if options.restraints.antibody == AntibodySurface::Cdrs {
+            if named.antibody == AntibodySurface::Cdrs {
                 let reason = exclude_elsewhere(&mut roles, sites[side]);
-                reasons.extend(reason.map(|reason| format!("the {} is {reason}", named.side)));
+                reasons.extend(reason.map(|reason| format!("the {name} is {reason}")));
             }
-            if let Some((option, residues)) = named.blocked {
-                let blocked = selected(molecule, named.side, option, residues)?;
-                set_role(&mut roles, &blocked, ResidueRole::Excluded);
-                reasons.push(named.reason(residues, "blocked"));
+            if let Some(residues) = blocked[side] {
+                let atoms = selected(molecule, name, "block", residues)?;
+                set_role(&mut roles, &atoms, ResidueRole::Excluded);
+                reasons.push(format!(
+                    "blocked: {} of the {name}",
+                    String::from(residues.clone())
+                ));
             }
-            if let Some((option, residues)) = named.active {
-                let active = selected(molecule, named.side, option, residues)?;
-                restraints.active[side] = molecule.atoms_by_residue(&active);
-                set_role(&mut roles, &active, ResidueRole::Active);
-                reasons.push(named.reason(residues, "active"));
+            if let Some(residues) = active[side] {
+                let atoms = selected(molecule, name, "active", residues)?;
+                all.active[side] = molecule.atoms_by_residue(&atoms);
+                set_role(&mut roles, &atoms, ResidueRole::Active);
+                reasons.push(format!(
+                    "active: {} of the {name}",
+                    String::from(residues.clone())
+                ));
             }
-            restraints.roles[side] = roles;
+            all.roles[side] = roles;
         }
-        restraints.reason = reasons.join("; ");
-        Ok(restraints)
+        all.reason = reasons.join("; ");
+        Ok(all)
     }
 }
 
@@ -79,56 +88,16 @@ fn set_role(roles: &mut [ResidueRole], chosen: &[bool], role: ResidueRole) {
     }
 }
 
-/// An option's name and the residues that it names.
-type NamedResidues<'a> = Option<(&'static str, &'a ResidueSelection)>;
-
-/// The residues of one side that options name.
-struct Named<'a> {
-    side: &'static str,
-    blocked: NamedResidues<'a>,
-    active: NamedResidues<'a>,
-}
-
-impl Named<'_> {
-    fn reason(&self, residues: &ResidueSelection, role: &str) -> String {
-        let residues = String::from(residues.clone());
-        format!("{role}: {residues} of the {}", self.side)
-    }
-}
-
-/// The residues of receptor and ligand that options name.
-fn named_residues(options: &DockOptions) -> [Named<'_>; 2] {
-    fn named<'a>(
-        option: &'static str,
-        residues: &'a Option<ResidueSelection>,
-    ) -> NamedResidues<'a> {
-        residues.as_ref().map(|residues| (option, residues))
-    }
-    let restraints = &options.restraints;
-    [
-        Named {
-            side: "receptor",
-            blocked: named("block_receptor", &restraints.block_receptor),
-            active: named("active_receptor", &restraints.active_receptor),
-        },
-        Named {
-            side: "ligand",
-            blocked: named("block_ligand", &restraints.block_ligand),
-            active: named("active_ligand", &restraints.active_ligand),
-        },
-    ]
-}
-
-/// Whether each atom of a molecule belongs to the residues that an option names.
+/// Whether each atom of a molecule belongs to the residues to which an option gives a role.
 fn selected(
     molecule: &Molecule,
     side: &str,
-    option: &'static str,
+    role: &str,
     residues: &ResidueSelection,
 ) -> Result<Vec<bool>, Error> {
     molecule.selected(residues).map_err(|unknown| {
         let bound = format!("residues that the {side} has, among {}", unknown.present());
-        refused(option, &unknown.part, &bound)
+        refused(&format!("{role}_{side}"), &unknown.part, &bound)
             .help("name residues that the file has, by chain and number")
     })
 }
@@ -166,7 +135,7 @@ pub(crate) mod tests {
                 options.restraints.block_receptor = receptor.map(|text| text.parse().unwrap());
                 options.restraints.block_ligand = ligand.map(|text| text.parse().unwrap());
             });
-            Restraints::new([&molecule, &molecule], [&[], &[]], &options)
+            ResidueRoles::new([&molecule, &molecule], [&[], &[]], &options)
         };
         let none = of(None, None).unwrap();
         assert!(none.reason.is_empty());
@@ -198,11 +167,11 @@ pub(crate) mod tests {
             options.restraints.active_receptor = Some("A:1,A:4".parse().unwrap());
             options.restraints.active_ligand = Some("A:2".parse().unwrap());
         });
-        let restraints = Restraints::new([&molecule, &molecule], [&[], &[]], &options).unwrap();
+        let roles = ResidueRoles::new([&molecule, &molecule], [&[], &[]], &options).unwrap();
         use ResidueRole::{Active, Excluded, Free};
-        assert_eq!(restraints.roles[0], [Active, Free, Excluded, Active]);
-        assert_eq!(restraints.roles[1], [Free, Active, Free, Free]);
-        assert_eq!(restraints.active, [vec![vec![0], vec![3]], vec![vec![1]]]);
+        assert_eq!(roles.roles[0], [Active, Free, Excluded, Active]);
+        assert_eq!(roles.roles[1], [Free, Active, Free, Free]);
+        assert_eq!(roles.active, [vec![vec![0], vec![3]], vec![vec![1]]]);
     }
 
     /// Atoms outside of an exclusive site are excluded, unless all of an antibody may bind or the user says otherwise.
@@ -219,7 +188,7 @@ pub(crate) mod tests {
         let (exclusive, favoured) = (site(SiteRole::Exclusive), site(SiteRole::Favoured));
         let of = |sites: &[Site], change: fn(&mut DockOptions)| {
             let options = DockOptions::default().changed(change);
-            Restraints::new([&molecule, &molecule], [sites, &[]], &options).unwrap()
+            ResidueRoles::new([&molecule, &molecule], [sites, &[]], &options).unwrap()
         };
         use ResidueRole::{Active, Excluded, Free};
         let found = of(std::slice::from_ref(&exclusive), |_| ());

@@ -8,19 +8,17 @@ use serde::{Deserialize, Serialize};
 /// How many of several restraints have to be satisfied: a number of them, or a share.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
-pub enum Needed {
+pub enum RequiredCount {
     /// So many, at least one.
     Count(usize),
     /// A share above 0, up to 1 for all.
     Share(f64),
 }
 
-/// A text that is neither a number of restraints nor a share of them.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("a number of restraints such as 3, or a share of them such as 60% or 0.6")]
-pub struct NeededError;
+/// The forms of a text that says how many.
+const FORMS: &str = "a number of restraints such as 3, or a share of them such as 60% or 0.6";
 
-impl Needed {
+impl RequiredCount {
     /// How many of `count` restraints that is: at least one of them where there are any. `None` where it is more than
     /// there are.
     pub fn of(self, count: usize) -> Option<usize> {
@@ -33,33 +31,33 @@ impl Needed {
     }
 }
 
-impl Default for Needed {
+impl Default for RequiredCount {
     fn default() -> Self {
         Self::Share(1.0)
     }
 }
 
-impl FromStr for Needed {
-    type Err = NeededError;
+impl FromStr for RequiredCount {
+    type Err = &'static str;
 
-    fn from_str(text: &str) -> Result<Self, NeededError> {
+    fn from_str(text: &str) -> Result<Self, Self::Err> {
         let share = |text: &str, whole: f64| {
             let share = text.trim().parse().map(|number: f64| number / whole);
             let share = share.ok().filter(|share| *share > 0.0 && *share <= 1.0);
-            share.map(Self::Share).ok_or(NeededError)
+            share.map(Self::Share).ok_or(FORMS)
         };
         match text.strip_suffix('%') {
             Some(percent) => share(percent, 100.0),
             None if text.contains('.') => share(text, 1.0),
             None => match text.trim().parse() {
-                Ok(0) | Err(_) => Err(NeededError),
+                Ok(0) | Err(_) => Err(FORMS),
                 Ok(count) => Ok(Self::Count(count)),
             },
         }
     }
 }
 
-impl fmt::Display for Needed {
+impl fmt::Display for RequiredCount {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Count(count) => count.fmt(f),
@@ -68,16 +66,16 @@ impl fmt::Display for Needed {
     }
 }
 
-impl From<Needed> for String {
-    fn from(needed: Needed) -> Self {
+impl From<RequiredCount> for String {
+    fn from(needed: RequiredCount) -> Self {
         needed.to_string()
     }
 }
 
-impl TryFrom<String> for Needed {
-    type Error = NeededError;
+impl TryFrom<String> for RequiredCount {
+    type Error = &'static str;
 
-    fn try_from(text: String) -> Result<Self, NeededError> {
+    fn try_from(text: String) -> Result<Self, Self::Error> {
         text.parse()
     }
 }
@@ -97,16 +95,16 @@ mod tests {
             ("0.001", Some(1), "0.1%"),
             ("6", None, "6"),
         ] {
-            let needed: Needed = text.parse().unwrap();
+            let needed: RequiredCount = text.parse().unwrap();
             assert_eq!(needed.of(5), of_five, "{text}");
             assert_eq!(needed.to_string(), written);
             assert_eq!(written.parse(), Ok(needed));
         }
-        assert_eq!(Needed::default().of(0), Some(0));
+        assert_eq!(RequiredCount::default().of(0), Some(0));
         for text in [
             "", "0", "0%", "0.0", "-1", "101%", "1.5", "nan", "all", "3 of 5", "inf%",
         ] {
-            assert_eq!(text.parse::<Needed>(), Err(NeededError), "{text}");
+            assert_eq!(text.parse::<RequiredCount>(), Err(FORMS), "{text}");
         }
     }
 }
