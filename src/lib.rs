@@ -57,4 +57,5 @@ pub mod table_text;
 mod test_molecules;
 pub mod threads;
 
+pub use geometry::collide::Collision;
 pub use knotdock_structures::Error;

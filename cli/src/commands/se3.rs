@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::tables::pose_list::write_list;
 use clap::{Args, Subcommand};
-use knotdock::geometry::motion::geodesic::{angle, distance, path};
-use knotdock::geometry::motion::tolerance::geodesic_ball;
+use knotdock::geometry::motion::{angle, distance, path};
+use knotdock::geometry::motion::geodesic_ball;
 use knotdock::options::values::{AT_LEAST_ONE, DISTANCE, in_range};
 use knotdock_scoring::se3::Pose;
 use serde_json::json;

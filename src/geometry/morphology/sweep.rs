@@ -14,7 +14,7 @@ use knotdock_structures::sampling::Ball;
 
 use super::{MorphologyError, MorphologyOptions};
 use crate::geometry::bracket::{Bracket, shifted, turned};
-use crate::geometry::motion::geodesic::{angle, interpolated};
+use crate::geometry::motion::{angle, interpolated};
 use crate::geometry::obstacle::reduce::reduced;
 
 /// How finely a path is sampled, and how exactly it is followed.

@@ -220,7 +220,7 @@ fn a_ball_on_a_line_sweeps_a_capsule_and_on_a_circle_a_ring() {
 /// A tolerated translation moves in every direction, a tolerated rotation moves far points farther.
 #[test]
 fn tolerances_hold_every_pose_of_the_geodesic_ball() {
-    use crate::geometry::motion::tolerance::geodesic_ball;
+    use crate::geometry::motion::geodesic_ball;
     let solid = Bracket::exact(vec![Ball {
         center: [3.0, 0.0, 0.0],
         radius: 0.5,
