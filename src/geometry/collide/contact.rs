@@ -118,18 +118,16 @@ impl CollisionQuery<'_> {
         let weights = &densities.weights;
         let mut seen = 0;
         let all = takes_pairs
-            && self.work.pairs.visit(
-                [first, second],
-                &self.motion,
-                0.0,
-                |[i, j], moved, _| {
+            && self
+                .work
+                .pairs
+                .visit([first, second], &self.motion, 0.0, |[i, j], moved, _| {
                     let a = weighted(&first.balls()[i], weights[0][i]);
                     let b = weighted(moved, weights[1][j]);
                     sum.add(&a, &b);
                     seen += 1;
                     pairs_nanoseconds(seen) <= worth
-                },
-            );
+                });
         let contact = match instead {
             Some(modes) if !all => {
                 let buffers = buffers(&mut self.work.modes, modes);

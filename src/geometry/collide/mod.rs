@@ -17,7 +17,7 @@
 //! - the least signed distance over pairs of inner balls is never below the signed distance of the solids: no
 //!   translation shorter than the depth of one pair parts that pair;
 //! - the least over pairs of outer balls is never above it while they are apart. If they meet, a translation that
-//!   parts them parts the solids too ([`separation`]).
+//!   parts them parts the solids too.
 //!
 //! Between the two the pose is undecided, and the gap of the solids is known to `eps_A` + `eps_B`.
 
@@ -37,8 +37,8 @@ use knotdock_structures::ball_solid::{
 };
 use rayon::prelude::*;
 
-pub use contact::{Contact, Method};
 use contact::Densities;
+pub use contact::{Contact, Method};
 pub use impact::Impact;
 pub use shared_volume::SharedVolume;
 

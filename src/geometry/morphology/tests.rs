@@ -249,10 +249,14 @@ fn too_many_balls_are_refused_before_they_are_made() {
         ..OPTIONS
     };
     let solid = cube([0.0; 3], 1.0);
-    assert!(matches!(
-        dilated(&solid, &solid, &options),
-        Err(MorphologyError::Memory { balls: 262_144, .. })
-    ));
+    let error = dilated(&solid, &solid, &options).unwrap_err();
+    assert!(error.message().contains("262144 balls"), "{error}");
+    assert!(
+        error
+            .remedy()
+            .is_some_and(|remedy| remedy.contains("--memory 5")),
+        "{error:?}"
+    );
     let poses = vec![Pose::identity(); 1000];
     assert!(product(&solid, &poses, &options).is_err());
 }
