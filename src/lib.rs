@@ -58,6 +58,7 @@ mod test_molecules;
 pub mod threads;
 
 pub use docking::{Docking, Run, dock};
+pub use geometry::collide::Collision;
 pub use knotdock_structures::Error;
 pub use knotdock_structures::mesh::Mesh;
 pub use knotdock_structures::molecule::Molecule;

@@ -10,7 +10,8 @@ mod path;
 mod peers;
 
 use crate::docking_parts::{Part, linked_torus, peg_and_hole};
-use knotdock::geometry::collide::{CollisionScene, Deadline, Verdict, Workspace};
+use knotdock::Collision;
+use knotdock::geometry::collide::Verdict;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
@@ -79,13 +80,11 @@ fn compare(meshes: [&Mesh; 2], poses: &[Pose], per_axis: usize) -> [usize; 3] {
             .unwrap()
             .0
     });
-    let scene = CollisionScene::new(solids, 0.0);
-    let mut work = Workspace::new();
+    let collision = Collision::new(&solids[0], &solids[1]).distance(true);
     let mut counts = [0; 3];
     for pose in poses {
-        let motion = scene.motion(pose);
-        let verdict = scene.verdict(&motion, Deadline::NEVER, &mut work).verdict;
-        let bounds = scene.distance(&motion, Deadline::NEVER, &mut work);
+        let report = collision.at(pose).unwrap();
+        let (verdict, bounds) = (report.verdict, report.distance.unwrap());
         let corner = Vector3::from(meshes[1].positions()[0]);
         let back =
             |point: [f64; 3]| pose.rotation.inverse() * (Vector3::from(point) - pose.translation);
@@ -101,7 +100,7 @@ fn compare(meshes: [&Mesh; 2], poses: &[Pose], per_axis: usize) -> [usize; 3] {
         match verdict {
             Verdict::Hit => assert!(meet || nested, "{case}"),
             Verdict::Free => assert!(!meet && !nested, "{case}"),
-            Verdict::Undecided => assert!(apart <= scene.band() + rounding, "{case}"),
+            Verdict::Undecided => assert!(apart <= collision.band() + rounding, "{case}"),
         }
         assert!(bounds.low <= bounds.high, "{case}");
         if meet || nested {

@@ -1,10 +1,11 @@
 //! What accuracy costs: the path with bunnies of 2^9 to 2^21 nodes.
 
+use crate::Setting;
 use crate::measured::Times;
 use crate::report::Figure;
 use crate::table::{Cell, Table};
-use crate::{Setting, densities};
-use knotdock::geometry::collide::{Deadline, Verdict, Workspace};
+use knotdock::Collision;
+use knotdock::geometry::collide::{Verdict, Workspace};
 use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
 use std::error::Error;
 use std::time::Instant;
@@ -47,18 +48,16 @@ pub fn figure(setting: &Setting) -> Result<Figure, Box<dyn Error>> {
 
 fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let start = Instant::now();
-    let questions = setting.questions(2f64.powf(f64::from(power) / 3.0).round() as usize)?;
+    let solid = setting.balls(2f64.powf(f64::from(power) / 3.0).round() as usize)?;
+    let collision = Collision::new(&solid, &solid).force(true);
+    collision.prepare()?;
     let making = start.elapsed().as_secs_f64();
-    let scene = questions.scene();
-    let densities = densities(scene)?;
     let mut work = Workspace::new();
     let path = &setting.path;
-    let motion = |pose: usize| scene.motion(&path[pose]);
     let taken = (0..path.len()).step_by(STRIDE);
     let verdicts = taken.clone().map(|pose| {
-        scene
-            .verdict(&motion(pose), Deadline::NEVER, &mut work)
-            .verdict
+        let mut query = collision.query(&path[pose], &mut work);
+        query.certificate().verdict()
     });
     let undecided = verdicts
         .filter(|verdict| *verdict == Verdict::Undecided)
@@ -66,22 +65,21 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let mut bands: Vec<f64> = taken
         .clone()
         .map(|pose| {
-            let bounds = scene.distance(&motion(pose), Deadline::NEVER, &mut work);
+            let bounds = collision.query(&path[pose], &mut work).distance();
             bounds.high - bounds.low
         })
         .collect();
     bands.sort_by(f64::total_cmp);
     let verdict = Times::of(path.len(), STRIDE, RUNS, |pose| {
-        scene.verdict(&motion(pose), Deadline::NEVER, &mut work)
+        collision.query(&path[pose], &mut work).certificate()
     });
     let distance = Times::of(path.len(), STRIDE, RUNS, |pose| {
-        scene.distance(&motion(pose), Deadline::NEVER, &mut work)
+        collision.query(&path[pose], &mut work).distance()
     });
     let force = Times::of(path.len(), STRIDE, RUNS, |pose| {
-        densities.contact(scene, &motion(pose), &mut work)
+        collision.query(&path[pose], &mut work).contact()
     });
     let spreads = [&verdict, &distance, &force].map(|times| times.spread(|_| true));
-    let solid = &scene.solids()[0];
     Ok(Row {
         power,
         epsilon: solid.epsilon() / setting.mesh.extent(),

@@ -25,8 +25,6 @@ mod table;
 mod versus;
 
 use clap::Parser;
-use knotdock::geometry::collide::contact::{Densities, DensityError};
-use knotdock::geometry::collide::{CollisionScene, Quantities, Questions, Ways};
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::mesh::{Mesh, Solid, read};
@@ -92,23 +90,10 @@ impl Setting {
         })
     }
 
-    /// Two of the solids, ready for questions.
-    fn questions(&self, per_axis: usize) -> Result<Questions, Box<dyn Error>> {
-        let (solid, _) = BallSolid::from_mesh(&self.solid, per_axis)?;
-        let scene = CollisionScene::new([solid.clone(), solid], 0.0);
-        let quantities = Quantities {
-            distance: false,
-            volume: false,
-            force: true,
-        };
-        Ok(Questions::new(scene, quantities, Ways::default())?)
+    /// The solid as balls.
+    fn balls(&self, per_axis: usize) -> Result<BallSolid, Box<dyn Error>> {
+        Ok(BallSolid::from_mesh(&self.solid, per_axis)?.0)
     }
-}
-
-/// The densities that the default ways take.
-fn densities(scene: &CollisionScene) -> Result<Densities, DensityError> {
-    let ways = Ways::default();
-    Densities::new(scene, 2.0, ways.method, ways.modes)
 }
 
 fn main() -> Result<(), Box<dyn Error>> {

@@ -4,10 +4,9 @@ use crate::measured::{Spread, Times};
 use crate::peers::{CoalRow, Parry, coal, python};
 use crate::report::Figure;
 use crate::table::{Cell, Table};
-use crate::{Options, Setting, densities, path};
-use knotdock::geometry::collide::{
-    Bounds, CollisionScene, Deadline, Quantities, Questions, Verdict, Ways, Workspace,
-};
+use crate::{Options, Setting, path};
+use knotdock::Collision;
+use knotdock::geometry::collide::{DistanceBounds, Verdict, Workspace};
 use knotdock_cli::plot::chart::{Axis, Colour, Panel, Series, Style};
 use std::error::Error;
 use std::fs;
@@ -32,7 +31,7 @@ struct Answers {
     /// knotdock's verdict of every pose.
     verdicts: Vec<Verdict>,
     /// Its bounds.
-    bounds: Vec<Bounds>,
+    bounds: Vec<DistanceBounds>,
     ours: AllTimes,
     parry: AllTimes,
     coal: Option<AllTimes>,
@@ -42,21 +41,22 @@ struct Answers {
 pub fn figure(setting: &Setting, options: &Options) -> Result<Figure, Box<dyn Error>> {
     let per_axis = 2f64.powf(f64::from(options.grid) / 3.0).round() as usize;
     let start = Instant::now();
-    let questions = setting.questions(per_axis)?;
-    let scene = questions.scene();
+    let solid = setting.balls(per_axis)?;
+    let collision = Collision::new(&solid, &solid).force(true);
+    collision.prepare()?;
     println!(
         "bunny on 2^{} nodes: {} inner balls, eps {:.3}% of its edge, made in {:.1} s",
         options.grid,
-        scene.solids()[0].inner().len(),
-        100.0 * scene.solids()[0].epsilon() / setting.mesh.extent(),
+        solid.inner().len(),
+        100.0 * solid.epsilon() / setting.mesh.extent(),
         start.elapsed().as_secs_f64()
     );
-    let answers = answers(setting, options, scene)?;
+    let answers = answers(setting, options, &collision)?;
     Ok(Figure {
         name: "collide",
         tables: vec![
             ("times", times(&answers, options.stride)),
-            ("batch", batch(setting, options, &questions)?),
+            ("batch", batch(setting, options, &collision)?),
         ],
         panels: panels(&answers),
         columns: 2,
@@ -66,18 +66,15 @@ pub fn figure(setting: &Setting, options: &Options) -> Result<Figure, Box<dyn Er
 fn answers(
     setting: &Setting,
     options: &Options,
-    scene: &CollisionScene,
+    collision: &Collision,
 ) -> Result<Answers, Box<dyn Error>> {
     let path = &setting.path;
-    let densities = densities(scene)?;
     let mut work = Workspace::new();
-    let verdict = |pose: usize, work: &mut Workspace| {
-        scene.verdict(&scene.motion(&path[pose]), Deadline::NEVER, work)
-    };
-    let distance = |pose: usize, work: &mut Workspace| {
-        scene.distance(&scene.motion(&path[pose]), Deadline::NEVER, work)
-    };
-    let verdicts = (0..path.len()).map(|pose| verdict(pose, &mut work).verdict);
+    let verdict =
+        |pose: usize, work: &mut Workspace| collision.query(&path[pose], work).certificate();
+    let distance =
+        |pose: usize, work: &mut Workspace| collision.query(&path[pose], work).distance();
+    let verdicts = (0..path.len()).map(|pose| verdict(pose, &mut work).verdict());
     let verdicts = verdicts.collect();
     let bounds = (0..path.len()).map(|pose| distance(pose, &mut work));
     let bounds = bounds.collect();
@@ -85,7 +82,7 @@ fn answers(
         Times::of(path.len(), 1, RUNS, |pose| verdict(pose, &mut work)),
         Times::of(path.len(), 1, RUNS, |pose| distance(pose, &mut work)),
         Times::of(path.len(), 1, RUNS, |pose| {
-            densities.contact(scene, &scene.motion(&path[pose]), &mut work)
+            collision.query(&path[pose], &mut work).contact()
         }),
     ];
     let parry = Parry::new([&setting.mesh, &setting.mesh])?;
@@ -215,20 +212,14 @@ fn cells(spread: Option<Spread>) -> [Cell; 3] {
 fn batch(
     setting: &Setting,
     options: &Options,
-    questions: &Questions,
+    collision: &Collision,
 ) -> Result<Table, Box<dyn Error>> {
-    let scene = questions.scene().clone();
-    let quantities = Quantities {
-        distance: false,
-        volume: false,
-        force: false,
-    };
-    let verdicts = Questions::new(scene, quantities, Ways::default())?;
+    let verdicts = collision.clone().force(false);
     let poses: Vec<_> = setting.path.iter().cycle().take(CHUNK).copied().collect();
     let mut rows = Vec::new();
-    for (what, questions) in [
+    for (what, collision) in [
         ("verdict", &verdicts),
-        ("verdict, force, torque", questions),
+        ("verdict, force, torque", collision),
     ] {
         for threads in [1, 2] {
             let pool = rayon::ThreadPoolBuilder::new();
@@ -237,7 +228,7 @@ fn batch(
             let mut done = 0;
             while done < options.batch {
                 let chunk = &poses[..CHUNK.min(options.batch - done)];
-                done += pool.install(|| questions.answers(chunk)).len();
+                done += pool.install(|| collision.at_each(chunk))?.len();
             }
             let seconds = start.elapsed().as_secs_f64();
             rows.push(vec![

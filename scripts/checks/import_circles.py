@@ -1,12 +1,11 @@
 #!/usr/bin/env python3
-"""Check that no two folders of a crate import each other, directly or through others, nor two files.
+"""Check that no two folders of a crate import each other, directly or through others.
 
 usage: import_circles.py [--graph]      from anywhere in the repository
 
-A folder is one at the top of a crate; a file there is one by itself. An import leads to the file that defines the name: a module's
-`pub use` is followed, and is no import of its own. Test modules are left out. A circle is allowed where all its files
-are one module and its own submodules (a type and its split-out implementation). --graph prints the imports between
-folders of the main crate instead.
+A folder is one at the top of a crate; a file there is one by itself. An import leads to the file that defines the name:
+a module's `pub use` is followed, and is no import of its own. Test modules are left out. --graph prints the imports
+between folders.
 """
 
 import pathlib
@@ -14,7 +13,12 @@ import re
 import sys
 
 ROOT = pathlib.Path(__file__).resolve().parents[2]
-CRATES = {"knotdock": "src", "knotdock_cli": "cli/src", "knotdock_structures": "structures/src", "knotdock_scoring": "scoring/src"}
+CRATES = {
+    "knotdock": "src",
+    "knotdock_cli": "cli/src",
+    "knotdock_structures": "structures/src",
+    "knotdock_scoring": "scoring/src",
+}
 USE = re.compile(r"^[ \t]*(pub(?:\([\w: ]+\))? )?use ([^;]+);", re.M)
 
 
@@ -146,12 +150,6 @@ def circles(graph):
     return found
 
 
-def of_one_type(part):
-    """Whether a circle's modules are one and its own submodules."""
-    top = min(part, key=len)
-    return top != () and all(module[: len(top)] == top and len(module) <= len(top) + 1 for module in part)
-
-
 def main():
     failed = False
     for name, folder in CRATES.items():
@@ -172,13 +170,6 @@ def main():
             for source in part:
                 for target in set(folders.get(source, ())) & set(part):
                     print(f"    {source} imports {target} in {', '.join(sorted(folders[source][target]))}")
-        for part in circles(graph):
-            if not of_one_type(part):
-                failed = True
-                print(f"{name}: these files import each other in a circle:")
-                for module in part:
-                    targets = sorted("::".join(target) or "lib" for target in graph[module] & set(part))
-                    print(f"    {'::'.join(module) or 'lib'} imports {', '.join(targets)}")
     sys.exit(failed)
 
 

@@ -9,9 +9,8 @@ use crate::dock::plan::{DockPlan, plan, plan_scene};
 use crate::dock::run::molecule_points;
 use crate::dock::scene::Scene;
 use crate::dock::stopwatch::timed;
-use crate::mesh::samplers::SamplerName;
-use crate::mesh::shape::Shape;
-use crate::mesh::{CLUSTER_RADIUS, MeshOptions, MeshPair, MeshSceneError, sample_pair};
+use crate::mesh::samplers::{RESOLUTION, Sampler};
+use crate::mesh::{CLUSTER_RADIUS, MeshOptions, MeshPair, MeshSceneError, Shape, sample_pair};
 use crate::options::{DockOptions, SampleWeights};
 use knotdock_structures::Error;
 
@@ -99,7 +98,7 @@ pub struct Preparer<'a> {
 }
 
 /// What a sampling depends on, of one pair and one offset.
-type SamplingKey = (usize, SampleWeights, SamplerName);
+type SamplingKey = (usize, SampleWeights, Sampler);
 
 fn key(options: &DockOptions) -> SamplingKey {
     (
@@ -176,10 +175,10 @@ pub struct GivenLengths {
 pub fn sampled_defaults(meshes: &MeshPair, options: &mut DockOptions, given: GivenLengths) {
     options.kernel.offset = meshes.offset;
     if !given.alpha {
-        options.kernel.alpha = meshes.sampler.alpha;
+        options.kernel.alpha = meshes.sampler.alpha();
     }
     if !given.resolution {
-        options.kernel.resolution = meshes.sampler.resolution * meshes.offset;
+        options.kernel.resolution = RESOLUTION * meshes.offset;
     }
     if !given.cluster_radius {
         options.ranking.cluster_radius = CLUSTER_RADIUS * meshes.offset;

@@ -1,8 +1,8 @@
-//! Questions of geometry that ball sets answer: collision, obstacles and Minkowski operations.
+//! Geometry of solids as sets of balls: collision, obstacles and Minkowski operations.
 //!
 //! # Conventions
 //!
-//! - A solid is known by two sets of balls, a [`Bracket`]: inner balls lie in it, outer balls hold it.
+//! - A solid is bounded by two sets of balls, a [`Bracket`]: inner balls lie in it, outer balls hold it.
 //! - Balls are stored relative to an origin, in the unit of the files, so that far coordinates cost no digits.
 //! - A pose is x -> R x + t, from the file's frame of the moved solid to that of the fixed one.
 
@@ -13,6 +13,5 @@ pub mod gap;
 pub mod morphology;
 pub mod motion;
 pub mod obstacle;
-pub mod surface;
 
 pub use bracket::Bracket;

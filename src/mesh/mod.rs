@@ -14,9 +14,9 @@
 //! compares them.
 
 pub mod samplers;
-pub mod shape;
 
 use knotdock_structures::knots::KnotsError;
+use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampling::feature_size::feature_size;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
@@ -26,8 +26,8 @@ use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-use crate::mesh::samplers::{BallsToWeigh, PartToSample, Sampler, SamplerName, union};
-use crate::mesh::shape::Shape;
+use crate::geometry::bracket::{bounds, shifted};
+use crate::mesh::samplers::{BallsToWeigh, PartToSample, Sampler, bi, lattice, union};
 
 /// Default radius of clusters in offsets: that of molecules.
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
@@ -56,13 +56,54 @@ pub struct MeshOptions {
     /// Nodes along each edge of each part's grid, n = m^(1/3).
     pub per_axis: usize,
     /// The sampler.
-    pub sampler: SamplerName,
+    pub sampler: Sampler,
     /// Skin offset r0, the gap looked for; `None`: [`default_offset`].
     pub offset: Option<f64>,
     /// Weights of the balls.
     pub weights: SampleWeights,
     /// Exponent alpha of the bump function.
     pub alpha: f64,
+}
+
+/// Content of a part that docks.
+#[derive(Clone, Copy)]
+pub enum Shape<'a> {
+    /// The solid that a mesh bounds; it is sampled.
+    Solid(&'a Solid),
+    /// Balls of a file, docked as they are.
+    Balls(&'a BallPart),
+}
+
+impl<'a> From<&'a Solid> for Shape<'a> {
+    fn from(solid: &'a Solid) -> Self {
+        Self::Solid(solid)
+    }
+}
+
+/// Balls of a file, in its unit.
+#[derive(Clone, Debug, PartialEq)]
+pub struct BallPart {
+    /// The balls, one at least.
+    pub balls: Vec<Ball>,
+    /// One weight per ball; `None`: they are fitted.
+    pub weights: Option<Vec<f64>>,
+}
+
+impl BallPart {
+    /// Middle of the bounding box, and its longest edge.
+    fn middle_and_edge(&self) -> ([f64; 3], f64) {
+        let (low, high) = bounds(&self.balls);
+        let edges = [0, 1, 2].map(|axis| high[axis] - low[axis]);
+        let middle = [0, 1, 2].map(|axis| low[axis] + 0.5 * edges[axis]);
+        (middle, edges.into_iter().fold(0.0, f64::max))
+    }
+
+    /// Median radius.
+    fn feature_size(&self) -> f64 {
+        let mut radii: Vec<f64> = self.balls.iter().map(|ball| ball.radius).collect();
+        radii.sort_by(f64::total_cmp);
+        radii.get(radii.len() / 2).copied().unwrap_or(0.0)
+    }
 }
 
 /// An error of two meshes that are docked, with the part at fault.
@@ -112,7 +153,7 @@ pub struct SampledPart {
     #[serde(skip)]
     pub knots: Knots,
     /// The sampler.
-    pub sampler: SamplerName,
+    pub sampler: Sampler,
     /// Number of balls.
     pub balls: usize,
     /// Their radius, of balls of every size the largest.
@@ -145,7 +186,7 @@ pub struct MeshPair {
     /// Skin offset r0 in use.
     pub offset: f64,
     /// The sampler.
-    pub sampler: &'static Sampler,
+    pub sampler: Sampler,
 }
 
 /// The default offset: 2 (`eps_A` + `eps_B`), but no more than twice the smaller feature size.
@@ -166,7 +207,7 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
             let longest = solid.half_sides().into_iter().fold(0.0, f64::max);
             2.0 * longest * solid.frame().unit
         }
-        Shape::Balls(part) => part.bounds().1,
+        Shape::Balls(part) => part.middle_and_edge().1,
     });
     for (part, &extent) in extents.iter().enumerate() {
         if !SIZES.contains(&extent) {
@@ -227,7 +268,7 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
             measured[1].sampled(1, offset, options)?,
         ],
         offset,
-        sampler: options.sampler.sampler(),
+        sampler: options.sampler,
     })
 }
 
@@ -263,7 +304,7 @@ impl<'a> Measured<'a> {
                 }
             }
             Shape::Balls(part) => {
-                let (middle, edge) = part.bounds();
+                let (middle, edge) = part.middle_and_edge();
                 let grid = Grid::of_edge(edge, per_axis);
                 Self {
                     shape,
@@ -292,18 +333,21 @@ impl<'a> Measured<'a> {
         let bump = Bump::new(options.alpha)
             .map_err(|error| of_part(index, error, "give --alpha a number above zero"))?;
         let fitted = (options.weights == SampleWeights::Fitted).then_some(bump);
-        let sampler = options.sampler.sampler();
-        let found = match (self.shape, &self.field, sampler.of_balls) {
-            (Shape::Solid(solid), Some(field), _) => {
+        let found = match (self.shape, &self.field, options.sampler) {
+            (Shape::Solid(solid), Some(field), sampler) => {
                 let part = PartToSample {
                     solid,
                     field,
                     offset: offset / self.unit,
                     fitted,
                 };
-                (sampler.sample)(&part).map_err(|error| unsampled(index, &error))?
+                let sample = match sampler {
+                    Sampler::Lattice => lattice::sample,
+                    Sampler::Bi => bi::sample,
+                };
+                sample(&part).map_err(|error| unsampled(index, &error))?
             }
-            (Shape::Balls(part), _, Some(of_balls)) => of_balls(&BallsToWeigh {
+            (Shape::Balls(part), _, Sampler::Bi) => bi::of_balls(&BallsToWeigh {
                 balls: about(self.middle, &part.balls),
                 weights: part.weights.as_deref(),
                 grid: self.grid,
@@ -350,11 +394,8 @@ impl<'a> Measured<'a> {
 
 /// Balls relative to a point.
 fn about(middle: [f64; 3], balls: &[Ball]) -> Vec<Ball> {
-    let moved = |ball: &Ball| Ball {
-        center: [0, 1, 2].map(|axis| ball.center[axis] - middle[axis]),
-        radius: ball.radius,
-    };
-    balls.iter().map(moved).collect()
+    let by = middle.map(|part| -part);
+    balls.iter().map(|ball| shifted(ball, by)).collect()
 }
 
 impl MeshPair {
@@ -365,6 +406,6 @@ impl MeshPair {
 
     /// Depth of the skin where the kernel is the product kernel; `None`: it is the cone.
     pub fn skin(&self) -> Option<f64> {
-        Some(self.sampler.skin? * self.offset)
+        Some(self.sampler.skin()? * self.offset)
     }
 }

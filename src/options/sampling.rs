@@ -6,7 +6,7 @@ use std::str::FromStr;
 use serde::{Deserialize, Serialize};
 
 use crate::mesh::SampleWeights;
-use crate::mesh::samplers::SamplerName;
+use crate::mesh::samplers::Sampler;
 
 use super::definition::{Choice, Optional, Parsed, options};
 
@@ -22,7 +22,7 @@ options! {
         /// How a mesh becomes balls: lattice or bi [default: lattice].
         ///
         /// lattice: balls of one radius. bi: the balls of Behandish and Ilieş' Algorithm 1, which count by volume.
-        sampler: Option<SamplerName> = None, "lattice|bi", Optional(Parsed);
+        sampler: Option<Sampler> = None, "lattice|bi", Optional(Parsed);
     }
 }
 

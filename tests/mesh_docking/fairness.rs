@@ -1,6 +1,6 @@
 //! Fairness of the product kernel: overlap counts by volume, whatever balls a solid is made of.
 
-use knotdock::mesh::samplers::SamplerName;
+use knotdock::mesh::samplers::Sampler;
 use knotdock::mesh::{MeshOptions, SampledPart, sample_pair};
 use knotdock::options::SampleWeights;
 use knotdock_scoring::engine::{EngineOptions, Plan};
@@ -45,7 +45,7 @@ const OFFSET: f64 = 0.14;
 fn sampled(solids: [&Solid; 2], per_axis: usize) -> [SampledPart; 2] {
     let options = MeshOptions {
         per_axis,
-        sampler: "bi".parse::<SamplerName>().unwrap(),
+        sampler: Sampler::Bi,
         offset: Some(OFFSET),
         weights: SampleWeights::Fitted,
         alpha: 16.0,

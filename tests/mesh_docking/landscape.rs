@@ -4,8 +4,8 @@ use super::parts::{Pair, Part};
 use super::scenes::{broken, peg, solid, torus};
 use knotdock::dock::pair::{GivenLengths, sampled_defaults};
 use knotdock::dock::scene::Scene;
-use knotdock::mesh::samplers::lattice::{RADIUS, RESOLUTION};
-use knotdock::mesh::samplers::{SamplerName, bi};
+use knotdock::mesh::samplers::lattice::RADIUS;
+use knotdock::mesh::samplers::{RESOLUTION, Sampler, bi};
 use knotdock::mesh::{MeshOptions, MeshPair, sample_pair};
 use knotdock::options::{DockOptions, SampleGrid, SampleWeights};
 use knotdock_scoring::engine::Plan;
@@ -19,7 +19,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 fn sampled(pair: &Pair) -> MeshPair {
     let options = MeshOptions {
         per_axis: SampleGrid::default().per_axis,
-        sampler: SamplerName::default(),
+        sampler: Sampler::default(),
         offset: None,
         weights: SampleWeights::Fitted,
         alpha: 2.0,

@@ -43,6 +43,24 @@ pub fn check_output<'a>(
     Ok(())
 }
 
+/// Checks the files of a command with [`check_output`], and that no two of them are one.
+pub fn check_outputs(
+    files: &[&PathBuf],
+    read: &[&Path],
+    force: bool,
+    console: Console,
+) -> Result<(), Error> {
+    for (index, file) in files.iter().enumerate() {
+        if files[..index].iter().any(|other| is_same(other, file)) {
+            return Err(Error::input("the same file is named twice")
+                .at(file)
+                .help("give each output file its own name"));
+        }
+        check_output(file, read.iter().copied(), force, console)?;
+    }
+    Ok(())
+}
+
 /// Checks that `file` is none of those that are `read`.
 pub fn check_not_read<'a>(
     file: &Path,

@@ -5,16 +5,16 @@ use std::path::{Path, PathBuf};
 use crate::report::{SolidsReport, Viewer};
 use crate::solid_files::balls::write_table;
 use crate::solid_files::sample_picture::write_ball_picture;
-use crate::solid_files::surfaces::{SurfaceFormat, write_surface};
-use crate::solid_files::volume_grids::{VolumeFormat, VolumeGrid, write_volume};
+use crate::solid_files::surfaces::SURFACE_FORMATS;
+use crate::solid_files::volume_grids::{VOLUME_FORMATS, VolumeGrid};
+use crate::solid_files::{check_picture, format_of, place_all};
 use clap::{Args, ValueEnum};
 use csv::StringRecord;
 use knotdock::geometry::Bracket;
-use knotdock::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid};
+use knotdock::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid, Surface, surface};
 use knotdock::geometry::bracket::{shifted, volume};
-use knotdock::geometry::surface::{Surface, surface};
 use knotdock::options::values::{AT_LEAST_ONE, in_range};
-use knotdock::output::files::whole_file::{StagedFile, is_stream};
+use knotdock::output::files::whole_file::StagedFile;
 use knotdock::output::tables::fields::number;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Figure;
@@ -22,12 +22,12 @@ use knotdock_structures::sampling::ball_tree::BallTree;
 use knotdock_structures::{Ball, Knots};
 use serde_json::{Value, json};
 
-use crate::arguments::output_file::{check_output, is_same};
+use crate::arguments::output_file::check_outputs;
 use crate::arguments::viewer::ViewerArguments;
 use crate::messages::console::Console;
 use knotdock_structures::Error;
 
-/// What to write of a solid.
+/// Files of a computed solid.
 #[derive(Args, Clone, Debug)]
 #[command(next_help_heading = "Output")]
 pub struct SolidOutput {
@@ -71,60 +71,32 @@ pub enum Side {
 /// Most cells along an edge.
 const MAX_CELLS: usize = 512;
 
-/// Why a file is not one that is written.
-fn unknown(option: &str, path: &Path, endings: &str) -> Error {
-    Error::input(format!("--{option} cannot write a file with this ending"))
-        .at(path)
-        .help(format!("end the name with {endings}"))
-}
-
 impl SolidOutput {
-    /// Checks, before any work, that the files to write are none of those `read`, and can be made.
+    /// Checks, before any work, that the files to write are none of those `read`, and can be made. `allowed` is the
+    /// memory that a process may take, in bytes.
     pub fn check(
         &self,
         read: &[&Path],
         allowed: Option<u64>,
         console: Console,
     ) -> Result<(), Error> {
-        let files: Vec<&PathBuf> = [
+        let files = [
             &self.output,
             &self.surface,
             &self.volume_grid,
             &self.picture,
             &self.report,
-        ]
-        .into_iter()
-        .flatten()
-        .collect();
-        for (index, file) in files.iter().enumerate() {
-            if files[..index].iter().any(|other| is_same(other, file)) {
-                return Err(Error::input("the same file is named twice")
-                    .at(file)
-                    .help("give each output file its own name"));
-            }
-            check_output(file, read.iter().copied(), self.force, console)?;
+        ];
+        let files: Vec<&PathBuf> = files.into_iter().flatten().collect();
+        check_outputs(&files, read, self.force, console)?;
+        if let Some(path) = &self.surface {
+            format_of("surface", path, &SURFACE_FORMATS)?;
         }
-        if let Some(path) = &self.surface
-            && SurfaceFormat::of(path).is_none()
-        {
-            return Err(unknown("surface", path, ".obj, .stl or .ply"));
+        if let Some(path) = &self.volume_grid {
+            format_of("volume-grid", path, &VOLUME_FORMATS)?;
         }
-        if let Some(path) = &self.volume_grid
-            && VolumeFormat::of(path).is_none()
-        {
-            return Err(unknown(
-                "volume-grid",
-                path,
-                ".mrc, .map, .ccp4, .nrrd or .vtk",
-            ));
-        }
-        if let Some(path) = &self.picture
-            && !path
-                .extension()
-                .is_some_and(|ending| ending.eq_ignore_ascii_case("svg"))
-            && !is_stream(path)
-        {
-            return Err(unknown("picture", path, ".svg"));
+        if let Some(path) = &self.picture {
+            check_picture(path)?;
         }
         if self.cells > MAX_CELLS {
             return Err(
@@ -151,15 +123,10 @@ impl SolidOutput {
         }
     }
 
-    /// Writes all that was requested of a result of a name and returns the names of the files; the table holds `table` if
-    /// that is given.
-    pub fn write(
-        &self,
-        (name, volumes): (&str, &Volumes),
-        solid: &Bracket,
-        table: Option<Knots>,
-    ) -> Result<Vec<String>, Error> {
+    /// Writes the requested files of a result and returns their names; the table holds `table` if that is given.
+    pub fn write(&self, result: &SolidResult, table: Option<Knots>) -> Result<Vec<String>, Error> {
         let viewer = self.viewer.read()?;
+        let solid = &result.solid;
         let balls = self.chosen(solid);
         let mut staged: Vec<(StagedFile, &PathBuf)> = Vec::new();
         let wants_any =
@@ -177,12 +144,13 @@ impl SolidOutput {
         }
         if self.surface.is_some() || self.volume_grid.is_some() {
             let field = field(balls, self.cells)?;
-            if let (Some(path), Some(format)) = (&self.surface, self.surface_format()) {
+            if let Some(path) = &self.surface {
+                let write = format_of("surface", path, &SURFACE_FORMATS)?;
                 let surface = surface(&field, solid.origin);
-                let written = write_surface(&surface.positions, &surface.triangles, format, path)?;
-                staged.push((written, path));
+                staged.push((StagedFile::write(path, |file| write(&surface, file))?, path));
             }
-            if let (Some(path), Some(format)) = (&self.volume_grid, self.volume_format()) {
+            if let Some(path) = &self.volume_grid {
+                let write = format_of("volume-grid", path, &VOLUME_FORMATS)?;
                 let grid = VolumeGrid {
                     origin: [0, 1, 2].map(|axis| solid.origin[axis] + field.grid.first[axis]),
                     spacing: field.grid.spacing,
@@ -190,76 +158,19 @@ impl SolidOutput {
                     values: &field.depth,
                     title: "knotdock: depth of a union of balls, above zero inside",
                 };
-                staged.push((write_volume(&grid, format, path)?, path));
+                staged.push((StagedFile::write(path, |file| write(&grid, file))?, path));
             }
         }
         if let Some(path) = &self.picture {
             staged.push((write_ball_picture(&solid.inner, &solid.outer, path)?, path));
         }
         if let Some(path) = &self.report {
-            let text = page((name, volumes), solid, viewer.as_ref())?;
+            let text = result.page(viewer.as_ref())?;
             let written = StagedFile::write(path, |file| file.write_all(text.as_bytes()))?;
             staged.push((written, path));
         }
-        // None takes its place before all of them are on the device.
-        let mut names = Vec::new();
-        for (file, path) in staged {
-            file.place()?;
-            names.push(path.display().to_string());
-        }
-        Ok(names)
+        place_all(staged)
     }
-
-    fn surface_format(&self) -> Option<SurfaceFormat> {
-        self.surface.as_deref().and_then(SurfaceFormat::of)
-    }
-
-    fn volume_format(&self) -> Option<VolumeFormat> {
-        self.volume_grid.as_deref().and_then(VolumeFormat::of)
-    }
-}
-
-/// The report of a result.
-fn page(
-    (name, volumes): (&str, &Volumes),
-    solid: &Bracket,
-    viewer: Option<&Viewer>,
-) -> Result<String, Error> {
-    let sets = [
-        ("outer balls", &solid.outer, volumes.outer),
-        ("inner balls", &solid.inner, volumes.inner),
-    ];
-    let surfaces = sets.map(|(_, balls, _)| shown_surface(balls, solid.origin));
-    let [outer, inner] = surfaces;
-    let (outer, inner) = (outer?, inner?);
-    let record = |(set, balls, (volume, error)): (&str, &Vec<Ball>, (f64, f64))| {
-        let fields = [
-            set.to_owned(),
-            balls.len().to_string(),
-            number(volume),
-            number(error),
-        ];
-        StringRecord::from(fields.to_vec())
-    };
-    let columns = ["set", "balls", "volume", "error of the volume"];
-    let report = SolidsReport {
-        title: name.to_owned(),
-        sentences: vec![
-            "The result lies between its inner balls, which are in it, and its outer balls, which hold it.".to_owned(),
-            match solid.epsilon.is_finite() {
-                true => format!("Either set is within {} of it.", Figure(solid.epsilon)),
-                false => "How far either set is from it is not known.".to_owned(),
-            },
-        ],
-        names: ["outer balls", "inner balls"],
-        surfaces: [(&outer).into(), (&inner).into()],
-        caption: "Both sets of balls",
-        header: columns.into_iter().collect(),
-        records: sets.map(record).to_vec(),
-        main: &columns,
-        poses: &[Pose::identity(); 2],
-    };
-    Ok(report.text(viewer))
 }
 
 /// Cells along the longest edge of a surface that is looked at.
@@ -291,35 +202,45 @@ pub fn knots(balls: &[Ball], origin: [f64; 3]) -> Result<Knots, Error> {
     Knots::new(centers, radii).map_err(Error::machine)
 }
 
-/// Volumes of a result, and bounds of their errors: of the inner balls, of the outer ones.
-#[derive(Clone, Copy, Debug)]
-pub struct Volumes {
-    /// Of the inner balls.
-    pub inner: (f64, f64),
-    /// Of the outer balls.
-    pub outer: (f64, f64),
+/// A solid that was computed, with the volumes of its inner and its outer balls. A volume comes with a bound of its
+/// error.
+pub struct SolidResult {
+    /// Name of the operation.
+    pub name: &'static str,
+    /// The solid.
+    pub solid: Bracket,
+    /// Volume of the inner balls.
+    pub inner_volume: (f64, f64),
+    /// Volume of the outer balls.
+    pub outer_volume: (f64, f64),
 }
 
-impl Volumes {
-    /// Measures both.
-    pub fn of(solid: &Bracket) -> Self {
-        let inner = volume(&solid.inner);
-        let outer = match solid.is_exact() {
-            true => inner,
+impl SolidResult {
+    /// Measures the volumes.
+    pub fn new(name: &'static str, solid: Bracket) -> Self {
+        let inner_volume = volume(&solid.inner);
+        let outer_volume = match solid.is_exact() {
+            true => inner_volume,
             false => volume(&solid.outer),
         };
-        Self { inner, outer }
+        Self {
+            name,
+            solid,
+            inner_volume,
+            outer_volume,
+        }
     }
 
-    /// Reports them under the name of the result.
-    pub fn describe(&self, name: &str, solid: &Bracket, console: Console) {
+    /// Prints the volumes.
+    pub fn describe(&self, console: Console) {
         let set = |balls: &[Ball], (value, _): (f64, f64)| {
             format!("{} balls, volume {}", balls.len(), Figure(value))
         };
+        let Self { name, solid, .. } = self;
         console.say(format!(
             "\n{name}:\n  inner: {}\n  outer: {}",
-            set(&solid.inner, self.inner),
-            set(&solid.outer, self.outer)
+            set(&solid.inner, self.inner_volume),
+            set(&solid.outer, self.outer_volume)
         ));
         console.say(if solid.epsilon.is_finite() {
             format!(
@@ -333,12 +254,46 @@ impl Volumes {
     }
 
     /// The result for JSON.
-    pub fn object(&self, solid: &Bracket) -> Value {
+    pub fn object(&self) -> Value {
         let set = |balls: &[Ball], (value, error): (f64, f64)| json!({ "balls": balls.len(), "volume": value, "volume_error": error });
+        let epsilon = self.solid.epsilon;
         json!({
-            "inner": set(&solid.inner, self.inner),
-            "outer": set(&solid.outer, self.outer),
-            "epsilon": solid.epsilon.is_finite().then_some(solid.epsilon),
+            "inner": set(&self.solid.inner, self.inner_volume),
+            "outer": set(&self.solid.outer, self.outer_volume),
+            "epsilon": epsilon.is_finite().then_some(epsilon),
         })
+    }
+
+    /// The report.
+    fn page(&self, viewer: Option<&Viewer>) -> Result<String, Error> {
+        let solid = &self.solid;
+        let outer = shown_surface(&solid.outer, solid.origin)?;
+        let inner = shown_surface(&solid.inner, solid.origin)?;
+        let record = |set: &str, balls: &[Ball], (volume, error): (f64, f64)| {
+            let count = balls.len().to_string();
+            StringRecord::from(vec![set.to_owned(), count, number(volume), number(error)])
+        };
+        let columns = ["set", "balls", "volume", "error of the volume"];
+        let report = SolidsReport {
+            title: self.name.to_owned(),
+            sentences: vec![
+                "The result lies between its inner balls, which are in it, and its outer balls, which hold it.".to_owned(),
+                match solid.epsilon.is_finite() {
+                    true => format!("Either set is within {} of it.", Figure(solid.epsilon)),
+                    false => "How far either set is from it is not known.".to_owned(),
+                },
+            ],
+            names: ["outer balls", "inner balls"],
+            surfaces: [(&outer).into(), (&inner).into()],
+            caption: "Both sets of balls",
+            header: columns.into_iter().collect(),
+            records: vec![
+                record("outer balls", &solid.outer, self.outer_volume),
+                record("inner balls", &solid.inner, self.inner_volume),
+            ],
+            main: &columns,
+            poses: &[Pose::identity(); 2],
+        };
+        Ok(report.text(viewer))
     }
 }

@@ -8,24 +8,23 @@ use crate::report::{SolidsReport, Viewer};
 use crate::tables::collisions;
 use crate::tables::report::counted;
 use clap::{Args, ValueEnum};
-use knotdock::geometry::collide::impact::{Impact, first_impact};
-use knotdock::geometry::collide::{
-    Answer, CollisionScene, Method, Quantities, Questions, Verdict, Ways, Workspace,
-};
+use knotdock::Collision;
+use knotdock::geometry::collide::{CollisionReport, DEFAULT_MAX_MODES, Impact, Method, Verdict};
 use knotdock::options::values::{DISTANCE, Range, duration, in_range};
-use knotdock::output::files::whole_file::write_whole;
+use knotdock::output::files::whole_file::StagedFile;
 use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Figure;
 use serde_json::{Value, json};
 
 use crate::arguments::memory;
-use crate::arguments::output_file::{check_output, is_same};
+use crate::arguments::output_file::check_outputs;
 use crate::arguments::solid_output::shown_surface;
 use crate::arguments::viewer::ViewerArguments;
 use crate::inputs::poses::{PoseArguments, pose_file};
-use crate::inputs::solids::{SolidArguments, SolidInput};
+use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
 use crate::messages::console::Console;
+use crate::solid_files::place_all;
 use knotdock_structures::Error;
 
 /// Collide two solids: hit or free at each pose, with bounds of the distance, the shared volume, force and torque.
@@ -56,7 +55,7 @@ pub struct Collide {
     #[arg(long, value_enum, default_value_t = MethodName::Auto)]
     method: MethodName,
     /// The most Fourier modes that are summed, with their conjugates.
-    #[arg(long, value_name = "COUNT", default_value_t = Ways::default().modes, value_parser = in_range::<usize>(Range::between(1.0, 1e6)))]
+    #[arg(long, value_name = "COUNT", default_value_t = DEFAULT_MAX_MODES, value_parser = in_range::<usize>(Range::between(1.0, 1e6)))]
     modes: usize,
     /// What to compute beside the verdict; with commas between.
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Compute::Distance, Compute::Volume, Compute::Force])]
@@ -78,7 +77,7 @@ pub struct Collide {
     threads: Threads,
 }
 
-/// [`Method`] by its name.
+/// Names of [`Method`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum MethodName {
     /// Trees, and modes for forces where they cost less.
@@ -102,7 +101,7 @@ impl From<MethodName> for Method {
     }
 }
 
-/// What may be computed of a pose.
+/// Quantities of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum Compute {
     /// The verdict alone.
@@ -115,128 +114,142 @@ enum Compute {
     Force,
 }
 
-/// How near a path comes before it counts as a hit, as a share of the smaller solid.
-const TOLERANCE: f64 = 1e-6;
-
 impl Collide {
-    /// Answers.
+    /// Runs the command.
     pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.collide(console))?
     }
 
-    /// Answers on the threads of the caller.
+    /// Runs on the threads of the caller.
     fn collide(&self, console: Console) -> Result<(), Error> {
         let poses = match &self.path {
             Some(path) => pose_file(path)?,
             None => self.poses.read()?,
         };
         let viewer = self.viewer.read()?;
-        let solids = self.read()?;
-        self.check_output(&solids, console)?;
-        for (side, solid) in ["A", "B"].iter().zip(&solids) {
-            solid.describe(side, console);
-        }
-        let scene = CollisionScene::new(
-            solids.each_ref().map(|input| input.solid.clone()),
-            self.margin,
-        );
-        let ways = Ways {
-            method: self.method.into(),
-            modes: self.modes,
-            deadline: self.deadline.map(Duration::from_secs_f64),
-        };
-        let questions = Questions::new(scene, self.quantities(), ways).map_err(Error::input)?;
+        let names = [self.first.as_str(), &self.second];
+        let solids = read_solids(&names, &self.solids, memory::default_limit())?;
+        let mut read: Vec<&Path> = solids.iter().map(SolidInput::path).collect();
+        read.extend(self.poses.file());
+        read.extend(self.path.as_deref());
+        let files: Vec<&PathBuf> = [&self.output, &self.report].into_iter().flatten().collect();
+        check_outputs(&files, &read, self.force, console)?;
+        describe_solids(&solids, console);
+        let [a, b] = [0, 1].map(|side| &solids[side].solid);
+        let wants = |quantity| self.compute.contains(&quantity);
+        let collision = Collision::new(a, b)
+            .margin(self.margin)
+            .method(self.method.into())
+            .max_modes(self.modes)
+            .deadline(self.deadline.map(Duration::from_secs_f64))
+            .distance(wants(Compute::Distance))
+            .shared_volume(wants(Compute::Volume))
+            .force(wants(Compute::Force));
+        collision.prepare()?;
         let start = Instant::now();
-        let answers = questions.answers(&poses);
-        let seconds = start.elapsed().as_secs_f64();
-        let impact = self.path.is_some().then(|| impact(&questions, &poses));
-        let staged = self.output.as_deref();
-        let staged = staged.map(|file| collisions::write(file, &poses, &answers));
-        let staged = staged.transpose()?;
+        let results = Results {
+            reports: collision.at_each(&poses)?,
+            seconds: start.elapsed().as_secs_f64(),
+            impact: self.path.as_ref().map(|_| collision.first_impact(&poses)),
+            band: collision.band(),
+            solids,
+            poses,
+        };
+        let mut staged = Vec::new();
+        if let Some(file) = &self.output {
+            let table = collisions::write(file, &results.poses, &results.reports)?;
+            staged.push((table, file));
+        }
         if let Some(file) = &self.report {
-            let text = self.page(&solids, &questions, (&poses, &answers), viewer.as_ref())?;
-            write_whole(file, |file| file.write_all(text.as_bytes()))?;
+            let text = results.page(viewer.as_ref())?;
+            let page = StagedFile::write(file, |file| file.write_all(text.as_bytes()))?;
+            staged.push((page, file));
         }
-        if let Some(staged) = staged {
-            staged.place()?;
-        }
-        console.say(match &answers[..] {
-            [answer] => format!("\n{}", one_pose(answer)),
-            answers => format!("\n{}", summary(answers, &questions, seconds)),
+        place_all(staged)?;
+        console.say(match &results.reports[..] {
+            [report] => format!("\n{}", one_pose(report)),
+            _ => format!("\n{}", results.summary()),
         });
-        if let Some(impact) = &impact {
-            console.say(impact_text(impact, questions.scene().band()));
+        if let Some(impact) = &results.impact {
+            console.say(impact_text(impact, results.band));
         }
         if let Some(file) = &self.output {
             console.say(format!(
                 "Wrote {} rows to {}",
-                answers.len(),
+                results.poses.len(),
                 file.display()
             ));
         }
-        console.result(&self.object(&solids, &questions, &poses, &answers, impact, seconds))
+        console.result(&self.object(&results))
     }
 
-    fn read(&self) -> Result<[SolidInput; 2], Error> {
-        let allowed = memory::default_limit();
-        let first = SolidInput::read(&self.first, &self.solids, allowed)?;
-        let second = if self.second == self.first {
-            first.clone()
-        } else {
-            SolidInput::read(&self.second, &self.solids, allowed)?
-        };
-        Ok([first, second])
+    fn object(&self, results: &Results) -> Value {
+        let rows = || collisions::objects(&results.poses, &results.reports);
+        json!({
+            "a": results.solids[0].object(),
+            "b": results.solids[1].object(),
+            "margin": self.margin,
+            "undecided_band": results.band,
+            "hit": results.count(Verdict::Hit),
+            "free": results.count(Verdict::Free),
+            "undecided": results.count(Verdict::Undecided),
+            "seconds": results.seconds,
+            "impact": results.impact.map(|impact| json!({
+                "free_until": impact.free_until,
+                "hit_by": impact.hit_by,
+                "verdict": impact.verdict.name(),
+                "quaternion": impact.pose.map(|pose| pose.quaternion()),
+                "translation": impact.pose.map(|pose| <[f64; 3]>::from(pose.translation)),
+                "distances": impact.steps,
+            })),
+            "table": self.output.as_ref().map(|file| file.display().to_string()),
+            "poses": self.output.is_none().then(rows),
+        })
+    }
+}
+
+/// Collisions of two solids at many poses.
+struct Results {
+    solids: Vec<SolidInput>,
+    poses: Vec<Pose>,
+    reports: Vec<CollisionReport>,
+    /// Wall time of all poses.
+    seconds: f64,
+    impact: Option<Impact>,
+    /// Width of the gaps that the balls leave undecided.
+    band: f64,
+}
+
+impl Results {
+    /// Poses with a verdict.
+    fn count(&self, verdict: Verdict) -> usize {
+        let reports = self.reports.iter();
+        reports.filter(|report| report.verdict == verdict).count()
     }
 
-    fn check_output(&self, solids: &[SolidInput; 2], console: Console) -> Result<(), Error> {
-        let read: Vec<&Path> = solids
-            .iter()
-            .map(SolidInput::path)
-            .chain(self.poses.file())
-            .chain(self.path.as_deref())
-            .collect();
-        if let (Some(one), Some(other)) = (&self.output, &self.report)
-            && is_same(one, other)
-        {
-            return Err(Error::input("the same file is named twice")
-                .at(one)
-                .help("give each output file its own name"));
-        }
-        for file in [&self.output, &self.report].into_iter().flatten() {
-            check_output(file, read.iter().copied(), self.force, console)?;
-        }
-        Ok(())
-    }
-
-    /// The report.
-    fn page(
-        &self,
-        solids: &[SolidInput; 2],
-        questions: &Questions,
-        (poses, answers): (&[Pose], &[Answer]),
-        viewer: Option<&Viewer>,
-    ) -> Result<String, Error> {
-        let [a, b] = solids.each_ref().map(|input| {
-            let path = input.path().file_name().unwrap_or_default();
-            path.to_string_lossy().into_owned()
+    /// The report as a page.
+    fn page(&self, viewer: Option<&Viewer>) -> Result<String, Error> {
+        let [a, b] = [0, 1].map(|side| {
+            let name = self.solids[side].path().file_name().unwrap_or_default();
+            name.to_string_lossy().into_owned()
         });
-        let shown = solids
-            .each_ref()
-            .map(|input| shown_surface(&input.solid.outer(), input.solid.origin()));
-        let [first, second] = shown;
-        let (first, second) = (first?, second?);
-        let (header, records) = collisions::table(poses, answers);
+        let shown = |side: usize| {
+            let solid = &self.solids[side].solid;
+            shown_surface(&solid.outer(), solid.origin())
+        };
+        let (first, second) = (shown(0)?, shown(1)?);
+        let (header, records) = collisions::table(&self.poses, &self.reports);
         let report = SolidsReport {
             title: format!("Collisions of {a} with {b}"),
             sentences: vec![
                 format!("{a} (A) stands and {b} (B) moves."),
                 format!(
                     "Of {}: hit {}, free {}, undecided {} (gaps below {}).",
-                    counted(answers.len(), "pose"),
-                    number_of(answers, Verdict::Hit),
-                    number_of(answers, Verdict::Free),
-                    number_of(answers, Verdict::Undecided),
-                    Figure(questions.scene().band()),
+                    counted(self.reports.len(), "pose"),
+                    self.count(Verdict::Hit),
+                    self.count(Verdict::Free),
+                    self.count(Verdict::Undecided),
+                    Figure(self.band),
                 ),
             ],
             names: ["A", "B"],
@@ -252,93 +265,33 @@ impl Collide {
                 "overlap_volume",
                 "overlap_energy",
             ],
-            poses,
+            poses: &self.poses,
         };
         Ok(report.text(viewer))
     }
 
-    fn quantities(&self) -> Quantities {
-        let wants = |what| self.compute.contains(&what);
-        Quantities {
-            distance: wants(Compute::Distance),
-            volume: wants(Compute::Volume),
-            force: wants(Compute::Force),
-        }
-    }
-
-    fn object(
-        &self,
-        solids: &[SolidInput; 2],
-        questions: &Questions,
-        poses: &[Pose],
-        answers: &[Answer],
-        impact: Option<Impact>,
-        seconds: f64,
-    ) -> Value {
-        let rows = self
-            .output
-            .is_none()
-            .then(|| collisions::objects(poses, answers));
-        json!({
-            "a": solids[0].object(),
-            "b": solids[1].object(),
-            "margin": self.margin,
-            "undecided_band": questions.scene().band(),
-            "hit": number_of(answers, Verdict::Hit),
-            "free": number_of(answers, Verdict::Free),
-            "undecided": number_of(answers, Verdict::Undecided),
-            "seconds": seconds,
-            "impact": impact.map(|impact| json!({
-                "free_until": impact.free_until,
-                "hit_by": impact.hit_by,
-                "verdict": impact.verdict,
-                "quaternion": impact.pose.map(|pose| pose.quaternion()),
-                "translation": impact.pose.map(|pose| <[f64; 3]>::from(pose.translation)),
-                "distances": impact.steps,
-            })),
-            "table": self.output.as_ref().map(|file| file.display().to_string()),
-            "poses": rows,
-        })
+    fn summary(&self) -> String {
+        let times = self.reports.iter().map(|report| 1e6 * report.seconds);
+        let mut times: Vec<f64> = times.collect();
+        times.sort_by(f64::total_cmp);
+        let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
+        format!(
+            "{} poses: {} hit, {} free, {} undecided (gaps below {}); {:.0} poses a second; microseconds a pose: median \
+             {:.1}, 99% {:.1}, worst {:.1}",
+            self.reports.len(),
+            self.count(Verdict::Hit),
+            self.count(Verdict::Free),
+            self.count(Verdict::Undecided),
+            Figure(self.band),
+            self.reports.len() as f64 / self.seconds,
+            at(0.5),
+            at(0.99),
+            at(1.0),
+        )
     }
 }
 
-fn impact(questions: &Questions, path: &[Pose]) -> Impact {
-    let sizes = questions
-        .scene()
-        .solids()
-        .each_ref()
-        .map(|solid| solid.reach());
-    let tolerance = TOLERANCE * sizes[0].min(sizes[1]);
-    first_impact(questions.scene(), path, tolerance, &mut Workspace::new())
-}
-
-fn number_of(answers: &[Answer], verdict: Verdict) -> usize {
-    let these = answers
-        .iter()
-        .filter(|answer| answer.found.verdict == verdict);
-    these.count()
-}
-
-fn summary(answers: &[Answer], questions: &Questions, seconds: f64) -> String {
-    let mut times: Vec<f64> = answers.iter().map(|answer| 1e6 * answer.seconds).collect();
-    times.sort_by(f64::total_cmp);
-    let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
-    format!(
-        "{} poses: {} hit, {} free, {} undecided (gaps below {}); {:.0} poses a second; microseconds a pose: median {:.1}, \
-         99% {:.1}, worst {:.1}",
-        answers.len(),
-        number_of(answers, Verdict::Hit),
-        number_of(answers, Verdict::Free),
-        number_of(answers, Verdict::Undecided),
-        Figure(questions.scene().band()),
-        answers.len() as f64 / seconds,
-        at(0.5),
-        at(0.99),
-        at(1.0),
-    )
-}
-
-fn one_pose(answer: &Answer) -> String {
+fn one_pose(report: &CollisionReport) -> String {
     let point = |point: [f64; 3]| {
         format!(
             "({}, {}, {})",
@@ -348,7 +301,7 @@ fn one_pose(answer: &Answer) -> String {
         )
     };
     // A force or torque that vanishes is computed as some 1e-15 of the energy; that is shown as 0.
-    let least = answer
+    let least = report
         .contact
         .map_or(0.0, |contact| 1e-12 * contact.energy.abs());
     let without_rounding = |component: f64| {
@@ -360,10 +313,10 @@ fn one_pose(answer: &Answer) -> String {
     };
     let mut lines = vec![format!(
         "Verdict: {} (certified by {})",
-        answer.found.verdict.name(),
-        answer.found.certificate.name()
+        report.verdict.name(),
+        report.certificate.name()
     )];
-    if let Some(bounds) = answer.bounds {
+    if let Some(bounds) = report.distance {
         let [a, b] = bounds.witnesses.map(point);
         lines.push(format!(
             "Signed distance: {} to {}; witness points {a} of A and {b} of B",
@@ -371,14 +324,14 @@ fn one_pose(answer: &Answer) -> String {
             Figure(bounds.high)
         ));
     }
-    if let Some(volume) = answer.volume {
+    if let Some(volume) = report.shared_volume {
         lines.push(format!(
             "Shared volume: {} to {}",
             Figure(volume.value - volume.bound),
             Figure(volume.value + volume.bound)
         ));
     }
-    if let Some(contact) = answer.contact {
+    if let Some(contact) = report.contact {
         lines.push(format!(
             "Overlap energy {}; force on B {}, torque about its centre of mass {}",
             Figure(contact.energy),
@@ -388,9 +341,9 @@ fn one_pose(answer: &Answer) -> String {
     }
     lines.push(format!(
         "Took {:.1} microseconds, {} pairs of balls and {} modes",
-        1e6 * answer.seconds,
-        answer.ball_pairs,
-        answer.modes
+        1e6 * report.seconds,
+        report.ball_pairs,
+        report.modes
     ));
     lines.join("\n")
 }

@@ -8,19 +8,18 @@ use knotdock::geometry::Bracket;
 use knotdock::geometry::morphology::difference::difference;
 use knotdock::geometry::morphology::products::{product, quotient};
 use knotdock::geometry::morphology::sweep::{SweepOptions, sample_count, sweep};
-use knotdock::geometry::morphology::{
-    MorphologyError, MorphologyOptions, closed, dilated, offset, opened,
-};
+use knotdock::geometry::morphology::{MorphologyOptions, closed, dilated, offset, opened};
 use knotdock::options::SampleGrid;
 use knotdock::options::values::{ABOVE_ZERO, DISTANCE, LENGTH, in_range};
 use knotdock::threads;
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Figure;
 use serde_json::json;
 
 use crate::arguments::memory;
-use crate::arguments::solid_output::{SolidOutput, Volumes};
+use crate::arguments::solid_output::{SolidOutput, SolidResult};
 use crate::inputs::poses::pose_file;
-use crate::inputs::solids::{SolidArguments, SolidInput};
+use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
 use crate::messages::console::Console;
 use knotdock_structures::Error;
 
@@ -126,154 +125,133 @@ struct Common {
 /// Step of a sweep as a share of the solid's longest edge.
 const STEP: f64 = 0.02;
 
-impl Operation {
-    fn common(&self) -> &Common {
-        match self {
-            Self::Offset { common, .. } | Self::Sweep { common, .. } => common,
-            Self::Open(pair) | Self::Close(pair) | Self::Sum(pair) | Self::Difference(pair) => {
-                &pair.common
-            }
-            Self::Product(poses) | Self::Quotient(poses) => &poses.common,
-        }
-    }
-
-    fn name(&self) -> &'static str {
-        match self {
-            Self::Offset { .. } => "Offset",
-            Self::Open(_) => "Opening",
-            Self::Close(_) => "Closing",
-            Self::Sum(_) => "Sum",
-            Self::Difference(_) => "Difference",
-            Self::Sweep { .. } => "Sweep",
-            Self::Product(_) => "Product",
-            Self::Quotient(_) => "Quotient",
-        }
-    }
-
-    /// The solids named.
-    fn solids(&self) -> Vec<&str> {
-        match self {
-            Self::Offset { first, .. } | Self::Sweep { first, .. } => vec![first],
-            Self::Open(pair) | Self::Close(pair) | Self::Sum(pair) | Self::Difference(pair) => {
-                vec![&pair.first, &pair.second]
-            }
-            Self::Product(poses) | Self::Quotient(poses) => vec![&poses.first],
-        }
-    }
-
+/// The parts of an operation that all share.
+struct Request<'a> {
+    name: &'static str,
+    solids: Vec<&'a str>,
     /// The file of poses.
-    fn pose_file(&self) -> Option<&Path> {
-        match self {
-            Self::Sweep { path, .. } => Some(path),
-            Self::Product(poses) | Self::Quotient(poses) => Some(&poses.poses),
-            _ => None,
+    poses: Option<&'a Path>,
+    common: &'a Common,
+}
+
+impl Operation {
+    fn request(&self) -> Request<'_> {
+        let (name, solids, poses, common) = match self {
+            Self::Offset { first, common, .. } => ("Offset", vec![first], None, common),
+            Self::Open(pair) => ("Opening", pair.solids(), None, &pair.common),
+            Self::Close(pair) => ("Closing", pair.solids(), None, &pair.common),
+            Self::Sum(pair) => ("Sum", pair.solids(), None, &pair.common),
+            Self::Difference(pair) => ("Difference", pair.solids(), None, &pair.common),
+            Self::Sweep {
+                first,
+                path,
+                common,
+                ..
+            } => ("Sweep", vec![first], Some(path), common),
+            Self::Product(a) => ("Product", vec![&a.first], Some(&a.poses), &a.common),
+            Self::Quotient(a) => ("Quotient", vec![&a.first], Some(&a.poses), &a.common),
+        };
+        Request {
+            name,
+            solids: solids.into_iter().map(String::as_str).collect(),
+            poses: poses.map(PathBuf::as_path),
+            common,
         }
     }
 }
 
+impl Pair {
+    fn solids(&self) -> Vec<&String> {
+        vec![&self.first, &self.second]
+    }
+}
+
 impl Morph {
-    /// Computes.
+    /// Runs the command.
     pub fn run(self, console: Console) -> Result<(), Error> {
-        let threads = self
-            .operation
-            .common()
-            .machine
-            .options
-            .machine
-            .thread_count();
-        threads::on(threads, || self.compute(console))?
+        let machine = &self.operation.request().common.machine.options.machine;
+        threads::on(machine.thread_count(), || self.compute(console))?
     }
 
     fn compute(&self, console: Console) -> Result<(), Error> {
-        let operation = &self.operation;
-        let common = operation.common();
+        let request = self.operation.request();
+        let common = request.common;
         let allowed = common
             .machine
             .options
             .machine
             .memory
             .or_else(memory::default_limit);
-        let poses = operation.pose_file().map(pose_file).transpose()?;
-        let inputs: Vec<SolidInput> = (operation.solids().into_iter())
-            .map(|text| SolidInput::read(text, &common.solids, allowed))
-            .collect::<Result<_, _>>()?;
+        let poses = request.poses.map(pose_file).transpose()?;
+        let inputs = read_solids(&request.solids, &common.solids, allowed)?;
         let mut read: Vec<&Path> = inputs.iter().map(SolidInput::path).collect();
-        read.extend(operation.pose_file());
+        read.extend(request.poses);
         common.output.check(&read, allowed, console)?;
-        for (side, solid) in ["A", "B"].iter().zip(&inputs) {
-            solid.describe(side, console);
-        }
+        describe_solids(&inputs, console);
         let solids: Vec<Bracket> = inputs.iter().map(|input| (&input.solid).into()).collect();
         let options = MorphologyOptions {
             per_axis: common.complement_grid.per_axis,
             memory: allowed,
         };
-        let found = result(operation, &solids, poses.as_deref(), &options, console)
-            .map_err(|error| refused(&error))?;
-        let volumes = Volumes::of(&found);
-        volumes.describe(operation.name(), &found, console);
-        let files = common
-            .output
-            .write((operation.name(), &volumes), &found, None)?;
+        let solid = self.result(
+            &solids,
+            poses.as_deref().unwrap_or_default(),
+            &options,
+            console,
+        )?;
+        let result = SolidResult::new(request.name, solid);
+        result.describe(console);
+        let files = common.output.write(&result, None)?;
         if !files.is_empty() {
             console.say(format!("Wrote {}", files.join(", ")));
         }
-        let mut object = volumes.object(&found);
-        object["operation"] = json!(operation.name().to_ascii_lowercase());
+        let mut object = result.object();
+        object["operation"] = json!(request.name.to_ascii_lowercase());
         object["a"] = json!(inputs.first().map(SolidInput::object));
         object["b"] = json!(inputs.get(1).map(SolidInput::object));
         object["poses"] = json!(poses.as_ref().map(Vec::len));
         object["files"] = json!(files);
         console.result(&object)
     }
-}
 
-/// The result of an operation on the solids that it names.
-fn result(
-    operation: &Operation,
-    solids: &[Bracket],
-    poses: Option<&[knotdock_scoring::se3::Pose]>,
-    options: &MorphologyOptions,
-    console: Console,
-) -> Result<Bracket, MorphologyError> {
-    let poses = poses.unwrap_or_default();
-    match (operation, solids) {
-        (Operation::Offset { distance, .. }, [a, ..]) => offset(a, *distance, options),
-        (Operation::Open(_), [a, b, ..]) => opened(a, b, options),
-        (Operation::Close(_), [a, b, ..]) => closed(a, b, options),
-        (Operation::Sum(_), [a, b, ..]) => dilated(a, b, options),
-        (Operation::Difference(_), [a, b, ..]) => difference(a, b, options),
-        (Operation::Product(_), [a, ..]) => product(a, poses, options),
-        (Operation::Quotient(_), [a, ..]) => quotient(a, poses, options),
-        (
+    /// The result of the operation on its solids.
+    fn result(
+        &self,
+        solids: &[Bracket],
+        poses: &[Pose],
+        options: &MorphologyOptions,
+        console: Console,
+    ) -> Result<Bracket, Error> {
+        let (a, b) = match solids {
+            [a] => (a, a),
+            [a, b, ..] => (a, b),
+            [] => return Err(Error::lasting("the operation has no solids")),
+        };
+        match &self.operation {
+            Operation::Offset { distance, .. } => offset(a, *distance, options),
+            Operation::Open(_) => opened(a, b, options),
+            Operation::Close(_) => closed(a, b, options),
+            Operation::Sum(_) => dilated(a, b, options),
+            Operation::Difference(_) => difference(a, b, options),
+            Operation::Product(_) => product(a, poses, options),
+            Operation::Quotient(_) => quotient(a, poses, options),
             Operation::Sweep {
                 step, tolerance, ..
-            },
-            [a, ..],
-        ) => {
-            let (low, high) = a.bounds();
-            let edges = (0..3).map(|axis| high[axis] - low[axis]);
-            let sweeping = SweepOptions {
-                step: step.unwrap_or(STEP * edges.fold(0.0, f64::max)),
-                tolerance: *tolerance,
-            };
-            console.say(format!(
-                "Path: {} poses, sampled at {}, no point moves more than {} between two",
-                poses.len(),
-                sample_count(a, poses, &sweeping),
-                Figure(sweeping.step)
-            ));
-            sweep(a, poses, &sweeping, options)
+            } => {
+                let (low, high) = a.bounds();
+                let edges = (0..3).map(|axis| high[axis] - low[axis]);
+                let sweeping = SweepOptions {
+                    step: step.unwrap_or(STEP * edges.fold(0.0, f64::max)),
+                    tolerance: *tolerance,
+                };
+                console.say(format!(
+                    "Path: {} poses, sampled at {}, no point moves more than {} between two",
+                    poses.len(),
+                    sample_count(a, poses, &sweeping),
+                    Figure(sweeping.step)
+                ));
+                sweep(a, poses, &sweeping, options)
+            }
         }
-        // Each operation has read as many solids as it names.
-        (_, _) => Ok(Bracket::exact(Vec::new())),
     }
-}
-
-fn refused(error: &MorphologyError) -> Error {
-    let MorphologyError::Memory { needed, .. } = error;
-    let least = knotdock::memory_size::as_size(knotdock::memory_size::named(*needed));
-    Error::input(error).help(format!(
-        "use a coarser --grid or --complement-grid, or fewer poses, or allow at least --memory {least}"
-    ))
 }

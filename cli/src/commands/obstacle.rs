@@ -7,9 +7,8 @@ use clap::Args;
 use knotdock::geometry::Bracket;
 use knotdock::geometry::ball_field::{BallField, FieldGrid};
 use knotdock::geometry::gap::{GapWay, gap_ways};
-use knotdock::geometry::obstacle::pairs::PairSums;
 use knotdock::geometry::obstacle::regions::free_regions;
-use knotdock::geometry::obstacle::{mirrored, sum};
+use knotdock::geometry::obstacle::{mirrored, pair_sums, sum};
 use knotdock::options::values::{AT_LEAST_ONE, LENGTH, in_range};
 use knotdock::output::files::whole_file::StagedFile;
 use knotdock::threads;
@@ -20,10 +19,11 @@ use knotdock_structures::mesh::Figure;
 use knotdock_structures::sampling::ball_tree::BallTree;
 use serde_json::{Value, json};
 
-use crate::arguments::solid_output::{Side, SolidOutput, Volumes, knots};
+use crate::arguments::memory;
+use crate::arguments::solid_output::{SolidOutput, SolidResult, knots};
 use crate::inputs::poses::rotation;
 use crate::inputs::room::room_for_balls;
-use crate::inputs::solids::{SolidArguments, SolidInput};
+use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
 use crate::messages::console::Console;
 use knotdock_structures::Error;
 
@@ -76,16 +76,16 @@ pub struct Obstacle {
     machine: TypedOptions<OfMachine>,
 }
 
-/// An obstacle with what is reported of it.
-struct Found {
-    solid: Bracket,
-    volumes: Volumes,
+/// An obstacle at one rotation.
+struct RotatedObstacle {
+    quaternion: [f64; 4],
+    result: SolidResult,
     /// Free regions about the inner and the outer balls.
     regions: [usize; 2],
 }
 
 impl Obstacle {
-    /// Computes.
+    /// Runs the command.
     pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.machine.options.machine.thread_count(), || {
             self.compute(console)
@@ -93,127 +93,115 @@ impl Obstacle {
     }
 
     fn compute(&self, console: Console) -> Result<(), Error> {
-        let allowed = self
-            .machine
-            .options
-            .machine
-            .memory
-            .or_else(crate::arguments::memory::default_limit);
+        let machine = &self.machine.options.machine;
+        let allowed = machine.memory.or_else(memory::default_limit);
         let turned = match &self.rotation {
             Some(text) => rotation(text)?,
             None => Pose::identity(),
         };
-        let first = SolidInput::read(&self.first, &self.solids, allowed)?;
-        let second = SolidInput::read(&self.second, &self.solids, allowed)?;
-        let read = [first.path(), second.path()];
+        let names = [self.first.as_str(), &self.second];
+        let inputs = read_solids(&names, &self.solids, allowed)?;
+        let read: Vec<&Path> = inputs.iter().map(SolidInput::path).collect();
         self.output.check(&read, allowed, console)?;
-        for (side, solid) in [("A", &first), ("B", &second)] {
-            solid.describe(side, console);
-        }
-        let solids = [&first, &second].map(|input| Bracket::from(&input.solid));
-        let pairs = solids[0].inner.len() as u64 * solids[1].inner.len() as u64;
-        room_for_balls(pairs, allowed)?;
-        let inputs = [first.object(), second.object()];
+        describe_solids(&inputs, console);
+        let [a, b] = [0, 1].map(|side| Bracket::from(&inputs[side].solid));
+        room_for_balls(a.inner.len() as u64 * b.inner.len() as u64, allowed)?;
+        let inputs = json!({
+            "a": inputs[0].object(),
+            "b": inputs[1].object(),
+            "offset": self.offset,
+        });
         match self.rotations {
-            Some(count) => self.table(&solids, count, inputs, console),
-            None => self.one(&solids, &turned, inputs, console),
+            Some(count) => self.at_rotations(&a, &b, count, inputs, console),
+            None => self.at_rotation(&a, &b, &turned, inputs, console),
         }
     }
 
-    /// The obstacle at one rotation.
-    fn one(
+    /// Computes the obstacle at one rotation; `inputs` are part of the result.
+    fn at_rotation(
         &self,
-        [a, b]: &[Bracket; 2],
+        a: &Bracket,
+        b: &Bracket,
         rotation: &Pose,
-        [first, second]: [Value; 2],
+        inputs: Value,
         console: Console,
     ) -> Result<(), Error> {
-        let found = self.found(a, b, rotation);
+        let mirror = mirrored(b, rotation);
+        let obstacle = self.obstacle(a, b, rotation);
         let table = match (&self.output.output, self.reduce) {
             (Some(_), false) => {
-                let mirror = mirrored(b, rotation);
-                let balls: Vec<Ball> = self.pairs(a, &mirror).iter().collect();
-                Some(knots(&balls, found.solid.origin)?)
+                let (first, second) = (self.output.chosen(a), self.output.chosen(&mirror));
+                let balls: Vec<Ball> = pair_sums(first, second, self.offset).collect();
+                Some(knots(&balls, obstacle.result.solid.origin)?)
             }
             _ => None,
         };
-        let files = self
-            .output
-            .write(("Obstacle", &found.volumes), &found.solid, table)?;
-        found.volumes.describe("Obstacle", &found.solid, console);
-        let [inner, outer] = found.regions;
+        let files = self.output.write(&obstacle.result, table)?;
+        obstacle.result.describe(console);
+        let [inner, outer] = obstacle.regions;
         console.say(format!(
             "  Free regions: {inner} about the inner balls, {outer} about the outer ones (grid of {} cells)",
             self.output.cells
         ));
         let ways = match self.gap_grid {
-            Some(per_axis) => gap(a, &mirrored(b, rotation), per_axis, console)?,
+            Some(per_axis) => gap(a, &mirror, per_axis, console)?,
             None => Vec::new(),
         };
         if !files.is_empty() {
             console.say(format!("Wrote {}", files.join(", ")));
         }
-        let mut object = found.object();
-        object["gap_function"] = json!(ways.iter().map(way_object).collect::<Vec<Value>>());
-        object["a"] = first;
-        object["b"] = second;
-        object["offset"] = json!(self.offset);
-        object["quaternion"] = json!(rotation.quaternion());
+        let mut object = obstacle.object();
+        object["gap_function"] = ways.iter().map(way_object).collect();
+        for input in ["a", "b", "offset"] {
+            object[input] = inputs[input].clone();
+        }
+        object["quaternion"] = json!(obstacle.quaternion);
         object["files"] = json!(files);
         console.result(&object)
     }
 
-    /// Every pair of the set that is written.
-    fn pairs<'a>(&self, a: &'a Bracket, mirror: &'a Bracket) -> PairSums<'a> {
-        match self.output.set {
-            Side::Inner => PairSums::new(&a.inner, &mirror.inner, self.offset),
-            Side::Outer => PairSums::new(&a.outer, &mirror.outer, self.offset),
-        }
-    }
-
-    fn found(&self, a: &Bracket, b: &Bracket, rotation: &Pose) -> Found {
+    fn obstacle(&self, a: &Bracket, b: &Bracket, rotation: &Pose) -> RotatedObstacle {
         let solid = sum(a, &mirrored(b, rotation), self.offset);
         let regions = |balls: &[Ball]| match FieldGrid::about(balls, self.output.cells) {
-            // Where nothing is blocked all space is one region.
+            // If nothing is blocked, all space is one region.
             None => 1,
             Some(grid) => {
                 let tree = BallTree::new(balls);
                 free_regions(&BallField::new(&tree, grid), &tree).len()
             }
         };
-        Found {
-            volumes: Volumes::of(&solid),
+        let result = SolidResult::new("Obstacle", solid);
+        let solid = &result.solid;
+        RotatedObstacle {
+            quaternion: rotation.quaternion(),
             regions: match solid.is_exact() {
                 true => [regions(&solid.inner); 2],
                 false => [regions(&solid.inner), regions(&solid.outer)],
             },
-            solid,
+            result,
         }
     }
 
-    /// A row for each of `count` rotations.
-    fn table(
+    /// Computes the obstacles at `count` rotations, one row each; `inputs` are part of the result.
+    fn at_rotations(
         &self,
-        [a, b]: &[Bracket; 2],
+        a: &Bracket,
+        b: &Bracket,
         count: usize,
-        [first, second]: [Value; 2],
+        inputs: Value,
         console: Console,
     ) -> Result<(), Error> {
-        let mut rows = Vec::with_capacity(count);
-        for rotation in rotation_set(count) {
-            let pose = Pose {
-                rotation,
-                ..Pose::identity()
-            };
-            let found = self.found(a, b, &pose);
-            rows.push((pose.quaternion(), found));
-        }
+        let poses = rotation_set(count).into_iter().map(|rotation| Pose {
+            rotation,
+            ..Pose::identity()
+        });
+        let rows: Vec<RotatedObstacle> = poses.map(|pose| self.obstacle(a, b, &pose)).collect();
         if let Some(path) = &self.output.output {
             write_rows(&rows, path)?.place()?;
             console.say(format!("Wrote {} rows to {}", rows.len(), path.display()));
         }
-        let range = |value: fn(&Found) -> f64| {
-            let values = rows.iter().map(|(_, found)| value(found));
+        let range = |value: fn(&SolidResult) -> (f64, f64)| {
+            let values = rows.iter().map(|row| value(&row.result).0);
             let least = values.clone().fold(f64::INFINITY, f64::min);
             let most = values.fold(f64::NEG_INFINITY, f64::max);
             format!("{} to {}", Figure(least), Figure(most))
@@ -221,28 +209,27 @@ impl Obstacle {
         console.say(format!(
             "\n{count} rotations ({}):\n  volume of the inner balls {}, of the outer balls {}",
             set_name(count),
-            range(|found| found.volumes.inner.0),
-            range(|found| found.volumes.outer.0),
+            range(|result| result.inner_volume),
+            range(|result| result.outer_volume),
         ));
-        let caged = rows
-            .iter()
-            .filter(|(_, found)| found.regions[0] > 1)
-            .count();
+        let caged = rows.iter().filter(|row| row.regions[0] > 1).count();
         console.say(format!(
             "  {caged} rotations leave more than one free region about the inner balls"
         ));
-        let objects = rows.iter().map(|(quaternion, found)| {
-            let mut object = found.object();
-            object["quaternion"] = json!(quaternion);
+        let objects = rows.iter().map(|row| {
+            let mut object = row.object();
+            object["quaternion"] = json!(row.quaternion);
             object
         });
-        console.result(&json!({
-            "a": first,
-            "b": second,
-            "offset": self.offset,
-            "rotations": objects.collect::<Vec<Value>>(),
-            "table": self.output.output.as_ref().map(|path| path.display().to_string()),
-        }))
+        let mut object = inputs;
+        object["rotations"] = objects.collect();
+        object["table"] = json!(
+            self.output
+                .output
+                .as_ref()
+                .map(|path| path.display().to_string())
+        );
+        console.result(&object)
     }
 }
 
@@ -270,7 +257,7 @@ fn gap(
             radius: ball.radius,
         })
         .collect();
-    let ways = gap_ways(&a.inner, &turned, per_axis).map_err(Error::machine)?;
+    let ways = gap_ways(&a.inner, &turned, per_axis)?;
     console.say(format!(
         "\nGap function of the inner balls on {per_axis}^3 points; residuals as shares of its peak:\n  {:<28}{:>10}{:>13}{:>13}{:>13}",
         "way", "modes", "seconds", "residual", "Hausdorff"
@@ -298,36 +285,35 @@ fn way_object(way: &GapWay) -> Value {
     })
 }
 
-impl Found {
+impl RotatedObstacle {
     fn object(&self) -> Value {
-        let mut object = self.volumes.object(&self.solid);
+        let mut object = self.result.object();
         object["inner"]["free_regions"] = json!(self.regions[0]);
         object["outer"]["free_regions"] = json!(self.regions[1]);
         object
     }
 }
 
-fn write_rows(rows: &[([f64; 4], Found)], path: &Path) -> Result<StagedFile, Error> {
-    let written = StagedFile::write(path, |file| {
+fn write_rows(rows: &[RotatedObstacle], path: &Path) -> Result<StagedFile, Error> {
+    StagedFile::write(path, |file| {
         writeln!(
             file,
             "rotation,qw,qx,qy,qz,balls_inner,balls_outer,volume_inner,volume_outer,free_regions_inner,\
              free_regions_outer"
         )?;
-        for (number, ([w, x, y, z], found)) in rows.iter().enumerate() {
+        for (number, row) in (1..).zip(rows) {
+            let ([w, x, y, z], result) = (row.quaternion, &row.result);
             writeln!(
                 file,
-                "{},{w:?},{x:?},{y:?},{z:?},{},{},{:?},{:?},{},{}",
-                number + 1,
-                found.solid.inner.len(),
-                found.solid.outer.len(),
-                found.volumes.inner.0,
-                found.volumes.outer.0,
-                found.regions[0],
-                found.regions[1]
+                "{number},{w:?},{x:?},{y:?},{z:?},{},{},{:?},{:?},{},{}",
+                result.solid.inner.len(),
+                result.solid.outer.len(),
+                result.inner_volume.0,
+                result.outer_volume.0,
+                row.regions[0],
+                row.regions[1]
             )?;
         }
         Ok(())
-    });
-    Ok(written?)
+    })
 }

@@ -4,8 +4,8 @@ use std::path::{Path, PathBuf};
 
 use crate::tables::pose_list::write_list;
 use clap::{Args, Subcommand};
-use knotdock::geometry::motion::geodesic::{angle, distance, path};
-use knotdock::geometry::motion::tolerance::geodesic_ball;
+use knotdock::geometry::motion::geodesic_ball;
+use knotdock::geometry::motion::{angle, distance, path};
 use knotdock::options::values::{AT_LEAST_ONE, DISTANCE, in_range};
 use knotdock_scoring::se3::Pose;
 use serde_json::json;
@@ -22,11 +22,11 @@ use knotdock_structures::Error;
 #[derive(Args, Debug)]
 pub struct Se3 {
     #[command(subcommand)]
-    question: Question,
+    operation: Operation,
 }
 
 #[derive(Debug, Subcommand)]
-enum Question {
+enum Operation {
     /// The distance of two poses.
     Distance {
         /// The first pose.
@@ -107,10 +107,10 @@ impl PoseOutput {
 }
 
 impl Se3 {
-    /// Answers.
+    /// Runs the command.
     pub fn run(self, console: Console) -> Result<(), Error> {
-        match &self.question {
-            Question::Distance { first, second } => {
+        match &self.operation {
+            Operation::Distance { first, second } => {
                 let [p, q] = [pose(first)?, pose(second)?];
                 let shift = (q.translation - p.translation).norm();
                 let (turn, length) = (angle(&p, &q), distance(&p, &q));
@@ -120,7 +120,7 @@ impl Se3 {
                 ));
                 console.result(&json!({ "distance": length, "angle": turn, "shift": shift }))
             }
-            Question::Interpolate {
+            Operation::Interpolate {
                 first,
                 second,
                 steps,
@@ -136,7 +136,7 @@ impl Se3 {
                     "table": output.output.display().to_string(),
                 }))
             }
-            Question::Ball {
+            Operation::Ball {
                 center,
                 radius,
                 count,

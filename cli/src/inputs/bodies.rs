@@ -17,10 +17,9 @@ use knotdock_structures::Error;
 use knotdock_structures::molecule::InputSpec;
 use knotdock_structures::sampling::weights::FittedWeights;
 
-use crate::inputs::ball_files::ball_file_of;
 use crate::inputs::molecules::{Input, folders_of, label};
 use crate::inputs::room::{room_to_read, room_to_sample};
-use crate::inputs::shapes::{ShapeInput, is_shape};
+use crate::inputs::shapes::{ShapeInput, ball_file_of, is_shape};
 use crate::inputs::traces::refuse_traces;
 use crate::messages::console::Console;
 
@@ -223,7 +222,7 @@ impl Bodies {
             Self::Meshes(inputs) => {
                 let [receptor, ligand] = inputs.as_ref();
                 let part = |index: usize| sampling.map(|sampling| &sampling.pair.parts[index]);
-                [receptor.entry(part(0)), ligand.entry(part(1))]
+                return Ok([receptor.entry(part(0)), ligand.entry(part(1))]);
             }
         };
         Ok([receptor?, ligand?])
@@ -233,7 +232,7 @@ impl Bodies {
     pub fn records(&self) -> [&InputRecord; 2] {
         match self {
             Self::Molecules(inputs) => inputs.each_ref().map(|input| &input.record),
-            Self::Meshes(inputs) => inputs.each_ref().map(ShapeInput::record),
+            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.record),
         }
     }
 
@@ -291,7 +290,7 @@ fn sampled(
 ) -> Result<Sampling, Error> {
     let sampler = *options.sampling.sampler.get_or_insert_default();
     if !given.alpha {
-        options.kernel.alpha = sampler.sampler().alpha;
+        options.kernel.alpha = sampler.alpha();
     }
     let sampling = MeshOptions {
         sampler,
@@ -318,7 +317,7 @@ fn sampled(
 /// An error that names the mesh at fault.
 fn mesh_failure(error: MeshSceneError, inputs: &[ShapeInput; 2]) -> Error {
     match error.part {
-        Some(part) => error.error.at(&inputs[part].record().path),
+        Some(part) => error.error.at(&inputs[part].record.path),
         None => error.error,
     }
 }
@@ -362,6 +361,7 @@ fn sampling_text(pair: &MeshPair) -> String {
     });
     format!(
         "\nReceptor: {receptor}\nLigand: {ligand}\nOffset r0 {:.6e}, the gap looked for; {}",
-        pair.offset, pair.sampler.makes
+        pair.offset,
+        pair.sampler.makes()
     )
 }

@@ -1,10 +1,8 @@
 //! The inputs of a run: files named on the command line, in a table of pairs or in an earlier run's record.
 
-mod ball_files;
 pub mod bodies;
 pub mod complex_sides;
 pub mod conformations;
-pub mod meshes;
 pub mod molecules;
 pub mod native;
 pub mod poses;

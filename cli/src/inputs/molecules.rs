@@ -11,8 +11,8 @@ use knotdock_structures::molecule::{
     read_bytes_with_fates,
 };
 
-use crate::inputs::meshes::is_mesh;
 use crate::inputs::recent_molecules::read_recent;
+use crate::inputs::shapes::is_mesh;
 use knotdock_structures::Error;
 
 /// The folder of a run.json and the one above it, in which inputs are looked for that are no longer where they were; of

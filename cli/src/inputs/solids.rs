@@ -13,10 +13,9 @@ use knotdock_structures::mesh::Figure;
 use knotdock_structures::molecule::{InputSpec, Molecule};
 use serde_json::{Value, json};
 
-use crate::inputs::ball_files::{BallFileInput, ball_file_of};
-use crate::inputs::meshes::{MeshInput, is_mesh};
 use crate::inputs::molecules::Input;
 use crate::inputs::room::{room_to_read, room_to_sample};
+use crate::inputs::shapes::{BallFileInput, MeshInput, ball_file_of, is_mesh};
 use crate::messages::console::Console;
 use knotdock_structures::Error;
 
@@ -32,24 +31,13 @@ pub struct SolidArguments {
     pub input: TypedOptions<OfReading>,
 }
 
-/// What kind of file a solid came from.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SolidKind {
-    /// Sampled by Algorithm 1.
-    Mesh,
-    /// A ball an atom.
-    Molecule,
-    /// Balls as they are.
-    Balls,
-}
-
 /// A solid as read.
 #[derive(Clone)]
 pub struct SolidInput {
     /// File, the part of it that was read, and checksum.
     pub record: InputRecord,
-    /// What kind of file it was.
-    pub kind: SolidKind,
+    /// Kind of the file: mesh, molecule or balls.
+    kind: &'static str,
     /// The solid.
     pub solid: BallSolid,
     report: String,
@@ -87,7 +75,7 @@ impl SolidInput {
         let solid = BallSolid::from_balls(&file.balls, file.weights.as_deref())
             .map_err(|error| Error::input(error).at(&spec.path))?;
         Ok(Self {
-            kind: SolidKind::Balls,
+            kind: "balls",
             report: input.report(),
             warnings: input.warnings(),
             record: input.record,
@@ -118,7 +106,7 @@ impl SolidInput {
         }
         Ok(Self {
             record,
-            kind: SolidKind::Mesh,
+            kind: "mesh",
             report: format!(
                 "{report}\n  {} balls inside, the surface within {} of them",
                 solid.inner().len(),
@@ -140,20 +128,12 @@ impl SolidInput {
         let solid = BallSolid::from_balls(&balls, None).map_err(refused)?;
         Ok(Self {
             record,
-            kind: SolidKind::Molecule,
+            kind: "molecule",
             report: molecule.report.to_string(),
             warnings: Vec::new(),
             solid,
             sampling: None,
         })
-    }
-
-    /// Reports what was read under the name `side`, with warnings.
-    pub fn describe(&self, side: &str, console: Console) {
-        console.say(format!("{side}: {}", self.report));
-        for warning in &self.warnings {
-            console.warn(format!("{}: {warning}", self.record.path.display()));
-        }
     }
 
     /// The path of the file.
@@ -165,16 +145,42 @@ impl SolidInput {
     pub fn object(&self) -> Value {
         json!({
             "file": self.record.path.display().to_string(),
-            "kind": match self.kind {
-                SolidKind::Mesh => "mesh",
-                SolidKind::Molecule => "molecule",
-                SolidKind::Balls => "balls",
-            },
+            "kind": self.kind,
             "balls": self.solid.inner().len(),
             "epsilon": self.solid.epsilon(),
             "grid_per_axis": self.sampling.map(|sampling| sampling.per_axis),
             "volume_missed_by_balls": self.sampling.and_then(|sampling| sampling.missed),
             "warnings": self.warnings,
         })
+    }
+}
+
+/// Reads solids in one unit of length; a text that is repeated is read once.
+///
+/// # Errors
+/// As [`SolidInput::read`].
+pub fn read_solids(
+    texts: &[&str],
+    arguments: &SolidArguments,
+    allowed: Option<u64>,
+) -> Result<Vec<SolidInput>, Error> {
+    let mut solids: Vec<SolidInput> = Vec::with_capacity(texts.len());
+    for (index, text) in texts.iter().enumerate() {
+        let read = texts[..index].iter().position(|other| other == text);
+        solids.push(match read {
+            Some(other) => solids[other].clone(),
+            None => SolidInput::read(text, arguments, allowed)?,
+        });
+    }
+    Ok(solids)
+}
+
+/// Prints what was read of each solid, as A and B, and warns.
+pub fn describe_solids(solids: &[SolidInput], console: Console) {
+    for (side, input) in ["A", "B"].iter().zip(solids) {
+        console.say(format!("{side}: {}", input.report));
+        for warning in &input.warnings {
+            console.warn(format!("{}: {warning}", input.record.path.display()));
+        }
     }
 }

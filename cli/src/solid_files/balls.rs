@@ -1,15 +1,20 @@
 //! Knots as files: a table (`knots.csv`), a mesh of spheres (OBJ), and pseudo-atoms (PDB).
 
 use knotdock_structures::Error;
-use std::io;
 use std::path::Path;
 
 use knotdock_structures::{Ball, Knots};
 
 use knotdock::output::files::whole_file::StagedFile;
 
+/// Ways to export balls, by ending.
+pub const EXPORTS: [(&str, ExportBalls); 2] = [("obj", write_mesh), ("pdb", write_pseudo_atoms)];
+
+/// A way to export balls.
+pub type ExportBalls = fn(&Knots, &Path) -> Result<StagedFile, Error>;
+
 /// Header of the table.
-pub const COLUMNS: &str = "x,y,z,r,weight";
+const COLUMNS: &str = "x,y,z,r,weight";
 
 /// Writes the table: a row a knot, in the file's unit, 17 significant digits a number, which read back to the same
 /// double.
@@ -32,7 +37,7 @@ pub fn write_table(knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
     })
 }
 
-/// Writes the balls as an OBJ mesh: a sphere of 80 triangles each, circumscribed about none and inscribed in its ball.
+/// Writes the balls as an OBJ mesh: a sphere of 80 triangles each, inscribed in its ball.
 ///
 /// # Errors
 /// [`Error`] when the file cannot be made or written.
@@ -125,44 +130,29 @@ fn icosphere() -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
     (vertices, triangles)
 }
 
-/// Why balls could not be written as pseudo-atoms.
-#[derive(Debug, thiserror::Error)]
-pub enum PseudoAtomError {
-    /// The columns of a PDB file end at -999.999 and 9999.999.
-    #[error(
-        "ball {ball} has coordinate {value}, which the eight columns of a PDB file do not hold"
-    )]
-    Coordinate {
-        /// 1-based number of the ball.
-        ball: usize,
-        /// The coordinate, in the file's unit.
-        value: f64,
-    },
-    /// The file could not be written.
-    #[error(transparent)]
-    File(#[from] Error),
-}
-
 /// Writes the balls as pseudo-atoms of a PDB file, with three decimals.
 ///
 /// These are HETATM records named `X` of residue `BAL`, one residue for each ball. The radius is in the columns of
 /// the temperature factor and the weight in those of the occupancy.
 ///
 /// # Errors
-/// [`PseudoAtomError`] when a coordinate does not fit its columns or the file cannot be written.
-pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<StagedFile, PseudoAtomError> {
+/// [`Error`] when a coordinate does not fit its columns or the file cannot be written.
+pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
     for (index, center) in knots.centers.iter().enumerate() {
-        if let Some(&value) = center
+        if let Some(value) = center
             .iter()
             .find(|value| !(-999.9994..9999.9994).contains(*value))
         {
-            return Err(PseudoAtomError::Coordinate {
-                ball: index + 1,
-                value,
-            });
+            let error = format!(
+                "ball {} has coordinate {value}, which the eight columns of a PDB file do not hold",
+                index + 1
+            );
+            return Err(
+                Error::input(error).help("move or scale the mesh, or export the balls as .obj")
+            );
         }
     }
-    let staged = StagedFile::write(path, |file| {
+    StagedFile::write(path, |file| {
         writeln!(
             file,
             "REMARK 99 {} BALLS OF KNOTDOCK SAMPLE; RADIUS AS TEMPERATURE FACTOR, WEIGHT AS OCCUPANCY",
@@ -181,21 +171,8 @@ pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<StagedFile, Pseu
                 radius.min(999.99),
             )?;
         }
-        writeln!(file, "END")?;
-        io::Result::Ok(())
-    })?;
-    Ok(staged)
-}
-
-impl From<PseudoAtomError> for Error {
-    fn from(error: PseudoAtomError) -> Self {
-        match error {
-            PseudoAtomError::Coordinate { .. } => {
-                Self::input(&error).help("move or scale the mesh, or export the balls as .obj")
-            }
-            PseudoAtomError::File(error) => error,
-        }
-    }
+        writeln!(file, "END")
+    })
 }
 
 #[cfg(test)]
@@ -251,10 +228,9 @@ mod tests {
     fn pseudo_atoms_keep_to_their_columns() {
         let folder = tempfile::tempdir().unwrap();
         let path = folder.path().join("balls.pdb");
-        assert!(matches!(
-            write_pseudo_atoms(&knots(), &path),
-            Err(PseudoAtomError::Coordinate { ball: 1, .. })
-        ));
+        let error = write_pseudo_atoms(&knots(), &path).err().unwrap();
+        assert!(error.message().contains("ball 1 has coordinate -1000000"));
+        assert!(error.remedy().is_some_and(|remedy| remedy.contains(".obj")));
         assert!(!path.exists());
         let near = Knots::new(vec![[-1.5, 2.25, 1234.5]], vec![1.75]).unwrap();
         write_pseudo_atoms(&near, &path).unwrap().place().unwrap();

@@ -2,58 +2,19 @@
 //!
 //! OBJ and PLY keep all digits. STL holds 32-bit floats, seven digits of a coordinate.
 
-use knotdock_structures::Error;
 use std::io::{self, Write};
-use std::path::Path;
 
-use knotdock::output::files::whole_file::StagedFile;
+use knotdock::geometry::ball_field::Surface;
 
-/// A format of meshes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SurfaceFormat {
-    /// Wavefront OBJ.
-    Obj,
-    /// Binary STL.
-    Stl,
-    /// Binary PLY, little-endian.
-    Ply,
-}
+/// A way to write a surface.
+pub type WriteSurface = fn(&Surface, &mut dyn Write) -> io::Result<()>;
 
-impl SurfaceFormat {
-    /// The format of a file, by the ending of its name.
-    pub fn of(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
-        match ending.as_str() {
-            "obj" => Some(Self::Obj),
-            "stl" => Some(Self::Stl),
-            "ply" => Some(Self::Ply),
-            _ => None,
-        }
-    }
-}
+/// Formats of surfaces, by ending.
+pub const SURFACE_FORMATS: [(&str, WriteSurface); 3] =
+    [("obj", write_obj), ("stl", write_stl), ("ply", write_ply)];
 
-/// Writes vertices and triangles (numbers of vertices from zero, anticlockwise from outside).
-///
-/// # Errors
-/// [`Error`] when the file cannot be made or written.
-pub fn write_surface(
-    positions: &[[f64; 3]],
-    triangles: &[[u32; 3]],
-    format: SurfaceFormat,
-    path: &Path,
-) -> Result<StagedFile, Error> {
-    StagedFile::write(path, |file| match format {
-        SurfaceFormat::Obj => write_obj(positions, triangles, file),
-        SurfaceFormat::Stl => write_stl(positions, triangles, file),
-        SurfaceFormat::Ply => write_ply(positions, triangles, file),
-    })
-}
-
-fn write_obj(
-    positions: &[[f64; 3]],
-    triangles: &[[u32; 3]],
-    file: &mut dyn Write,
-) -> io::Result<()> {
+fn write_obj(surface: &Surface, file: &mut dyn Write) -> io::Result<()> {
+    let (positions, triangles) = (&surface.positions, &surface.triangles);
     writeln!(file, "# a surface written by knotdock")?;
     for [x, y, z] in positions {
         writeln!(file, "v {x:?} {y:?} {z:?}")?;
@@ -65,11 +26,8 @@ fn write_obj(
     Ok(())
 }
 
-fn write_stl(
-    positions: &[[f64; 3]],
-    triangles: &[[u32; 3]],
-    file: &mut dyn Write,
-) -> io::Result<()> {
+fn write_stl(surface: &Surface, file: &mut dyn Write) -> io::Result<()> {
+    let (positions, triangles) = (&surface.positions, &surface.triangles);
     let mut header = [0u8; 80];
     let title = b"a surface written by knotdock";
     header[..title.len()].copy_from_slice(title);
@@ -94,11 +52,8 @@ fn write_stl(
     Ok(())
 }
 
-fn write_ply(
-    positions: &[[f64; 3]],
-    triangles: &[[u32; 3]],
-    file: &mut dyn Write,
-) -> io::Result<()> {
+fn write_ply(surface: &Surface, file: &mut dyn Write) -> io::Result<()> {
+    let (positions, triangles) = (&surface.positions, &surface.triangles);
     write!(
         file,
         "ply\nformat binary_little_endian 1.0\ncomment a surface written by knotdock\n\
@@ -126,22 +81,23 @@ mod tests {
     /// A tetrahedron comes back from every format as the closed mesh that it was.
     #[test]
     fn surfaces_read_back() {
-        let positions = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]];
-        let triangles = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+        let surface = Surface {
+            positions: vec![[0.0; 3], [1.0, 0.0, 0.0], [0.0, 2.0, 0.0], [0.0, 0.0, 3.0]],
+            triangles: vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]],
+        };
         let folder = tempfile::tempdir().unwrap();
-        for name in ["a.obj", "a.stl", "a.ply"] {
-            let path = folder.path().join(name);
-            let format = SurfaceFormat::of(&path).unwrap();
-            let staged = write_surface(&positions, &triangles, format, &path).unwrap();
-            staged.place().unwrap();
+        for (ending, write) in SURFACE_FORMATS {
+            let path = folder.path().join("a").with_extension(ending);
+            let mut bytes = Vec::new();
+            write(&surface, &mut bytes).unwrap();
+            std::fs::write(&path, bytes).unwrap();
             let (mesh, report) = knotdock_structures::mesh::read(&path).unwrap();
-            assert!(report.is_sound() && report.triangles == 4, "{name}");
+            assert!(report.is_sound() && report.triangles == 4, "{ending}");
             assert!(
                 (mesh.volume() - 1.0).abs() < 1e-6,
-                "{name}: {}",
+                "{ending}: {}",
                 mesh.volume()
             );
         }
-        assert_eq!(SurfaceFormat::of(Path::new("a.off")), None);
     }
 }

@@ -7,17 +7,13 @@
 //! | `.vtk` | legacy VTK, structured points, binary | ParaView, VisIt, PyVista |
 //!
 //! Each is a short header and the numbers as they are, x fastest, as 32-bit floats. They are written here and by no crate,
-//! since those for MRC and VTK open files of their own, and no other writer may touch the disk (see
-//! [`super::whole_file`]); for NRRD there is none.
+//! since those for MRC and VTK open files themselves, and only `knotdock::output` may touch the disk; for NRRD there is
+//! none.
 //!
 //! Sources: Cheng et al., "MRC2014", Journal of Structural Biology 192 (2015); teem.sourceforge.net/nrrd/format.html;
 //! "VTK File Formats", Kitware.
 
-use knotdock_structures::Error;
 use std::io::{self, Write};
-use std::path::Path;
-
-use knotdock::output::files::whole_file::StagedFile;
 
 /// Values at the nodes of a grid. Index (z ny + y) nx + x.
 #[derive(Clone, Copy, Debug)]
@@ -34,45 +30,17 @@ pub struct VolumeGrid<'a> {
     pub title: &'a str,
 }
 
-/// A format of volume grids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum VolumeFormat {
-    /// MRC2014, which CCP4 maps share.
-    Mrc,
-    /// NRRD.
-    Nrrd,
-    /// Legacy VTK.
-    Vtk,
-}
+/// A way to write a grid.
+pub type WriteVolume = fn(&VolumeGrid, &mut dyn Write) -> io::Result<()>;
 
-impl VolumeFormat {
-    /// The format of a file, by the ending of its name.
-    pub fn of(path: &Path) -> Option<Self> {
-        let ending = path.extension()?.to_string_lossy().to_ascii_lowercase();
-        match ending.as_str() {
-            "mrc" | "map" | "ccp4" => Some(Self::Mrc),
-            "nrrd" => Some(Self::Nrrd),
-            "vtk" => Some(Self::Vtk),
-            _ => None,
-        }
-    }
-}
-
-/// Writes a grid.
-///
-/// # Errors
-/// [`Error`] when the file cannot be made or written.
-pub fn write_volume(
-    grid: &VolumeGrid,
-    format: VolumeFormat,
-    path: &Path,
-) -> Result<StagedFile, Error> {
-    StagedFile::write(path, |file| match format {
-        VolumeFormat::Mrc => write_mrc(grid, file),
-        VolumeFormat::Nrrd => write_nrrd(grid, file),
-        VolumeFormat::Vtk => write_vtk(grid, file),
-    })
-}
+/// Formats of volume grids, by ending.
+pub const VOLUME_FORMATS: [(&str, WriteVolume); 5] = [
+    ("mrc", write_mrc),
+    ("map", write_mrc),
+    ("ccp4", write_mrc),
+    ("nrrd", write_nrrd),
+    ("vtk", write_vtk),
+];
 
 /// Bytes of an MRC header.
 const MRC_HEADER: usize = 1024;
@@ -175,9 +143,7 @@ fn write_vtk(grid: &VolumeGrid, file: &mut dyn Write) -> io::Result<()> {
 mod tests {
     use super::*;
 
-    fn written(format: VolumeFormat) -> Vec<u8> {
-        let folder = tempfile::tempdir().unwrap();
-        let path = folder.path().join("grid");
+    fn written(write: WriteVolume) -> Vec<u8> {
         let values: Vec<f32> = (0..24).map(|value| value as f32 - 3.0).collect();
         let grid = VolumeGrid {
             origin: [1.5, -2.0, 1e6],
@@ -186,13 +152,14 @@ mod tests {
             values: &values,
             title: "depth",
         };
-        write_volume(&grid, format, &path).unwrap().place().unwrap();
-        std::fs::read(path).unwrap()
+        let mut bytes = Vec::new();
+        write(&grid, &mut bytes).unwrap();
+        bytes
     }
 
     #[test]
     fn an_mrc_file_is_as_the_standard_says() {
-        let bytes = written(VolumeFormat::Mrc);
+        let bytes = written(write_mrc);
         assert_eq!(bytes.len(), 1024 + 4 * 24);
         let word = |number: usize| <[u8; 4]>::try_from(&bytes[4 * number - 4..4 * number]).unwrap();
         let integer = |number: usize| i32::from_le_bytes(word(number));
@@ -212,7 +179,7 @@ mod tests {
 
     #[test]
     fn text_headers_end_where_the_numbers_begin() {
-        let nrrd = written(VolumeFormat::Nrrd);
+        let nrrd = written(write_nrrd);
         let end = nrrd.windows(2).position(|pair| pair == b"\n\n").unwrap() + 2;
         let header = std::str::from_utf8(&nrrd[..end]).unwrap();
         assert!(header.starts_with("NRRD0004\n") && header.contains("\nsizes: 2 3 4\n"));
@@ -220,7 +187,7 @@ mod tests {
         assert_eq!(nrrd.len() - end, 4 * 24);
         assert_eq!(nrrd[end..end + 4], (-3.0f32).to_le_bytes());
 
-        let vtk = written(VolumeFormat::Vtk);
+        let vtk = written(write_vtk);
         let line = b"LOOKUP_TABLE default\n";
         let start = vtk
             .windows(line.len())
@@ -231,20 +198,5 @@ mod tests {
         assert!(header.contains("\nDIMENSIONS 2 3 4\n") && header.contains("\nPOINT_DATA 24\n"));
         assert_eq!(vtk.len() - start, 4 * 24 + 1);
         assert_eq!(vtk[start..start + 4], (-3.0f32).to_be_bytes());
-    }
-
-    #[test]
-    fn formats_go_by_the_ending() {
-        for (name, format) in [
-            ("a.MRC", Some(VolumeFormat::Mrc)),
-            ("a.ccp4", Some(VolumeFormat::Mrc)),
-            ("a.map", Some(VolumeFormat::Mrc)),
-            ("a.nrrd", Some(VolumeFormat::Nrrd)),
-            ("a.vtk", Some(VolumeFormat::Vtk)),
-            ("a.vti", None),
-            ("a", None),
-        ] {
-            assert_eq!(VolumeFormat::of(Path::new(name)), format);
-        }
     }
 }

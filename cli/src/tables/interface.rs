@@ -7,7 +7,7 @@ use knotdock_scoring::terms::pose::POSE_TERMS;
 use serde_json::{Map, Value, json};
 
 use crate::tables::{Column, field, write_table};
-use knotdock::interface::{Interface, PlacedScore, ResiduePair};
+use knotdock::interface::{Contact, Interface, PlacedScore, ResidueName};
 use knotdock::table_text::cells::TableWriter;
 
 /// A complex.
@@ -90,7 +90,7 @@ pub fn write_rows(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Resu
 }
 
 /// Columns of the table of pairs.
-fn pair_columns<'a>() -> [Column<(&'a InterfaceRow, &'a ResiduePair)>; 12] {
+fn pair_columns<'a>() -> [Column<(&'a InterfaceRow, &'a Contact<ResidueName>)>; 12] {
     [
         ("file", |(row, _)| json!(row.file)),
         ("model", |(row, _)| json!(row.model)),

@@ -11,28 +11,29 @@ use knotdock_scoring::overlap::{
     Accumulator, ModesWorkspace, OverlapModes, PairOverlap, WeightedBall, pairs_nanoseconds,
 };
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::Ball;
 use knotdock_structures::ball_solid::{BallHierarchy, BallSolid, Motion};
+use knotdock_structures::{Ball, Error};
 use nalgebra::Vector3;
 
-use super::scene::{Certificate, CollisionScene, Deadline, Found, Verdict, Workspace};
+use super::{Certificate, Collision, CollisionQuery, has_come};
 
-/// How verdicts and forces are found.
+/// How verdicts and forces are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Verdicts by trees, forces as of [`Self::Hybrid`] where the bodies have so many balls that modes can cost less.
+    /// Verdicts by trees; forces as for [`Self::Hybrid`] if the bodies have enough balls for modes to cost less.
     #[default]
     Auto,
     /// Verdicts by trees, forces by all pairs of balls that meet.
     Tree,
-    /// Verdicts and forces by modes alone: no pose is ever found free.
+    /// Verdicts and forces by modes alone, which never certify that a pose is free.
     Modes,
-    /// Verdicts by trees, forces by pairs or by modes, whichever cost less at a pose.
+    /// Verdicts by trees, forces by pairs or by modes, whichever cost less at the pose.
     Hybrid,
 }
 
 /// Overlap energy, force and torque at a pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct Contact {
     /// The overlap energy, in the cube of the files' unit.
     pub energy: f64,
@@ -50,39 +51,22 @@ pub struct Contact {
 
 /// The densities of two solids, ready for many poses.
 #[derive(Clone, Debug)]
-pub struct Densities {
+pub(super) struct Densities {
     trees: [BallHierarchy; 2],
     /// Weights in the order of the trees.
     weights: [Vec<f64>; 2],
     kernel: PairOverlap,
     modes: Option<OverlapModes>,
-    pairs: bool,
-}
-
-/// Why densities cannot be made.
-#[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum DensityError {
-    /// The exponent of the bumps.
-    #[error(transparent)]
-    Alpha(#[from] knotdock_structures::numeric::bump::AlphaError),
-    /// The modes.
-    #[error(transparent)]
-    Modes(#[from] knotdock_scoring::overlap::OverlapModesError),
 }
 
 impl Densities {
-    /// Densities of bumps of exponent `alpha`; `modes` is the most Fourier modes, where the method takes any.
+    /// The densities that a collision needs, with modes if its method takes any.
     ///
     /// # Errors
-    /// [`DensityError`] unless alpha is above zero.
-    pub fn new(
-        scene: &CollisionScene,
-        alpha: f64,
-        method: Method,
-        modes: usize,
-    ) -> Result<Self, DensityError> {
-        let [(first, a), (second, b)] = scene.solids().each_ref().map(tree_of);
-        let kernel = PairOverlap::new(alpha)?;
+    /// [`Error`] if a margin or a ball cannot be taken.
+    pub fn new(collision: &Collision) -> Result<Self, Error> {
+        let [(first, a), (second, b)] = collision.solids.map(tree_of);
+        let kernel = PairOverlap::new(ALPHA).map_err(Error::lasting)?;
         let listed = |tree: &BallHierarchy, weights: &[f64]| -> Vec<WeightedBall> {
             let balls = tree.balls().iter().zip(weights);
             balls
@@ -91,105 +75,111 @@ impl Densities {
         };
         let prepared = || {
             let (a, b) = (listed(&first, &a), listed(&second, &b));
-            OverlapModes::with_margin(&kernel, &a, &b, modes, scene.margin())
+            OverlapModes::with_margin(&kernel, &a, &b, collision.max_modes, collision.margin)
+                .map_err(|error| {
+                    Error::input(error).help("give finite balls, or use the method tree")
+                })
         };
-        let most = pairs_nanoseconds((a.len() * b.len()) as u64);
-        let modes = match method {
+        let all_pairs = pairs_nanoseconds((a.len() * b.len()) as u64);
+        let modes = match collision.method {
             Method::Tree => None,
             Method::Modes | Method::Hybrid => Some(prepared()?),
             // Forces are those of the solids themselves: with a margin the modes are of grown ones.
-            Method::Auto if scene.margin() > 0.0 || most < WORTH_MODES => None,
-            Method::Auto => Some(prepared()?).filter(|modes| modes.nanoseconds() < most),
+            Method::Auto if collision.margin > 0.0 || all_pairs < WORTH_MODES => None,
+            Method::Auto => Some(prepared()?).filter(|modes| modes.nanoseconds() < all_pairs),
         };
         Ok(Self {
             trees: [first, second],
             weights: [a, b],
             kernel,
             modes,
-            pairs: method != Method::Modes,
         })
     }
+}
 
-    /// Energy, force and torque by pairs of balls, or by modes where these cost less.
-    pub fn contact(
-        &self,
-        scene: &CollisionScene,
-        motion: &Motion,
-        work: &mut Workspace,
-    ) -> Contact {
-        let about = motion.apply(scene.solids()[1].centroid());
-        let mut sum = Accumulator::new(&self.kernel, about);
+impl CollisionQuery<'_> {
+    /// Overlap energy, force and torque, by pairs of balls or by modes if these cost less; `None` if
+    /// [`Collision::prepare`] made no densities.
+    pub fn contact(&mut self) -> Option<Contact> {
+        let collision = self.collision;
+        let densities = collision.densities.get()?;
+        let about = self.motion.apply(collision.solids[1].centroid());
+        let mut sum = Accumulator::new(&densities.kernel, about);
+        let takes_pairs = collision.method != Method::Modes;
         // With a margin the modes are of grown solids, and no substitute for pairs.
-        let modes = self.modes.as_ref();
-        let instead = modes.filter(|modes| !self.pairs || modes.margin() == 0.0);
+        let modes = densities.modes.as_ref();
+        let instead = modes.filter(|modes| !takes_pairs || modes.margin() == 0.0);
         let worth = match instead {
-            Some(_) if !self.pairs => 0.0,
+            Some(_) if !takes_pairs => 0.0,
             Some(modes) => modes.nanoseconds(),
             None => f64::INFINITY,
         };
-        let [first, second] = &self.trees;
+        let [first, second] = &densities.trees;
+        let weights = &densities.weights;
         let mut seen = 0;
-        let all = self.pairs
-            && work
+        let all = takes_pairs
+            && self
+                .work
                 .pairs
-                .visit([first, second], motion, 0.0, |[i, j], moved, _| {
-                    let a = weighted(&first.balls()[i], self.weights[0][i]);
-                    let b = weighted(moved, self.weights[1][j]);
+                .visit([first, second], &self.motion, 0.0, |[i, j], moved, _| {
+                    let a = weighted(&first.balls()[i], weights[0][i]);
+                    let b = weighted(moved, weights[1][j]);
                     sum.add(&a, &b);
                     seen += 1;
                     pairs_nanoseconds(seen) <= worth
                 });
-        let (Some(modes), false) = (instead, all) else {
-            let sum = sum.sum();
-            return Contact {
-                energy: sum.energy,
-                force: sum.force.into(),
-                torque: sum.torque.into(),
-                bound: self.kernel.error() * sum.energy,
-                ball_pairs: sum.pairs as usize,
-                modes: 0,
-            };
+        let contact = match instead {
+            Some(modes) if !all => {
+                let buffers = buffers(&mut self.work.modes, modes);
+                let summed = modes.evaluate(&pose_of(&self.motion), about, buffers);
+                Contact {
+                    energy: summed.energy,
+                    force: summed.force.into(),
+                    torque: summed.torque.into(),
+                    bound: summed.tail + summed.rounding,
+                    ball_pairs: seen as usize,
+                    modes: summed.modes,
+                }
+            }
+            _ => {
+                let sum = sum.sum();
+                Contact {
+                    energy: sum.energy,
+                    force: sum.force.into(),
+                    torque: sum.torque.into(),
+                    bound: densities.kernel.error() * sum.energy,
+                    ball_pairs: sum.pairs as usize,
+                    modes: 0,
+                }
+            }
         };
-        let buffers = buffers(&mut work.modes, modes);
-        let found = modes.evaluate(&pose_of(motion), about, buffers);
-        Contact {
-            energy: found.energy,
-            force: found.force.into(),
-            torque: found.torque.into(),
-            bound: found.tail + found.rounding,
-            ball_pairs: seen as usize,
-            modes: found.modes,
-        }
+        self.ball_pairs += contact.ball_pairs;
+        self.modes += contact.modes;
+        Some(contact)
     }
 
-    /// A verdict by modes alone: a hit where they certify one.
-    pub fn verdict(
-        &self,
-        motion: &Motion,
-        deadline: Deadline,
-        work: &mut Workspace,
-    ) -> (Found, usize) {
-        let mut found = Found {
-            verdict: Verdict::Undecided,
-            certificate: Certificate::None,
-            ball_pairs: 0,
+    /// The certificate by modes alone: that of a hit, or none.
+    pub(super) fn certificate_by_modes(&mut self) -> Certificate {
+        let densities = self.collision.densities.get();
+        let Some(modes) = densities.and_then(|densities| densities.modes.as_ref()) else {
+            return Certificate::None;
         };
-        let Some(modes) = &self.modes else {
-            return (found, 0);
-        };
-        let buffers = buffers(&mut work.modes, modes);
-        let mut sum = modes.start(&pose_of(motion), buffers);
-        let summed = sum.advance(|| deadline.has_come(), true);
+        let buffers = buffers(&mut self.work.modes, modes);
+        let mut sum = modes.start(&pose_of(&self.motion), buffers);
+        let summed = sum.advance(|| has_come(self.end), true);
+        self.modes += summed.modes;
         if summed.certifies_hit() {
-            found.verdict = Verdict::Hit;
-            found.certificate = Certificate::Modes;
+            Certificate::Modes
         } else if !summed.complete {
-            found.certificate = Certificate::Deadline;
+            Certificate::Deadline
+        } else {
+            Certificate::None
         }
-        (found, summed.modes)
     }
 }
 
+/// Exponent of the bumps of densities: that for which weights are fitted.
+const ALPHA: f64 = 2.0;
 /// Nanoseconds of all pairs below which modes are not worth their preparation.
 const WORTH_MODES: f64 = 1e6;
 

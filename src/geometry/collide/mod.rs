@@ -1,38 +1,460 @@
-//! Collision of two solids at a pose (B&I, section 4.1): a verdict with what certifies it, bounds of the signed
-//! distance, the shared volume, and the force and torque of an overlap energy.
+//! Collision of two solids at a pose (B&I, section 4.1): a verdict with its certificate, bounds of the signed distance,
+//! the shared volume, and the force and torque of an overlap energy. [`Collision`] is the entry.
 //!
 //! # Conventions
 //!
-//! - Body A stands, body B moves: a point of its file at x goes to R x + t in A's frame. Lengths are in the files' unit.
-//! - The **signed distance** is the distance of the solids where they are apart. Where they meet it is minus their
+//! - Body A is fixed, body B moves: a point x of B's file goes to R x + t in A's frame. Lengths are in the files' unit.
+//! - The **signed distance** is the distance of the solids if they are apart. If they meet, it is minus their
 //!   penetration depth, the length of the shortest translation that parts them.
-//! - A **margin** D asks whether the solids come closer than D.
+//! - Two solids closer than the **margin** collide.
 //!
-//! # What certifies what
+//! # What certifies a verdict
 //!
 //! Inner balls lie inside the solids and outer balls hold them ([`knotdock_structures::ball_solid`]). So
 //!
-//! - inner balls closer than the margin certify a hit, containment included, and outer balls that are not certify that
-//!   the pose is free;
+//! - inner balls closer than the margin certify a hit, containment included; if no outer balls are closer than the
+//!   margin, the pose is free;
 //! - the least signed distance over pairs of inner balls is never below the signed distance of the solids: no
 //!   translation shorter than the depth of one pair parts that pair;
-//! - the least over pairs of outer balls is never above it where they are apart. Where they meet, a translation that
-//!   parts them parts the solids too ([`separation`]).
+//! - the least over pairs of outer balls is never above it while they are apart. If they meet, a translation that
+//!   parts them parts the solids too.
 //!
 //! Between the two the pose is undecided, and the gap of the solids is known to `eps_A` + `eps_B`.
 
-pub mod answer;
-pub mod contact;
-pub mod impact;
-pub mod scene;
-pub mod separation;
-pub mod shared_volume;
+mod contact;
+mod impact;
+mod separation;
+mod shared_volume;
 
-#[cfg(test)]
-mod obstacle_tests;
+use std::sync::OnceLock;
+use std::time::{Duration, Instant};
+
+use knotdock_scoring::overlap::ModesWorkspace;
+use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
+use knotdock_structures::ball_solid::{
+    BallHierarchy, BallSolid, Closest, ClosestSearch, Limits, MeetingPairs, Motion,
+};
+use rayon::prelude::*;
+
+use contact::Densities;
+pub use contact::{Contact, Method};
+pub use impact::Impact;
+pub use shared_volume::SharedVolume;
+
+/// Pairs of balls between two looks at the clock.
+const PAIRS_PER_CLOCK_CHECK: usize = 256;
+/// Poses that one thread takes at a time.
+const POSES_PER_TASK: usize = 64;
+/// Default of [`Collision::max_modes`].
+pub const DEFAULT_MAX_MODES: usize = 4096;
+
+/// Whether two solids come closer than a margin.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// They do.
+    Hit,
+    /// They do not.
+    Free,
+    /// The balls leave it open.
+    Undecided,
+}
+
+impl Verdict {
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Hit => "hit",
+            Self::Free => "free",
+            Self::Undecided => "undecided",
+        }
+    }
+}
+
+/// Certificate of a verdict.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Certificate {
+    /// A hit: a pair of inner balls is closer than the margin.
+    InnerBalls,
+    /// Free: no pair of outer balls is closer than the margin.
+    OuterBalls,
+    /// A hit: the summed bumps overlap by more than rounding and the omitted modes can make.
+    Modes,
+    /// None: the verdict is undecided.
+    None,
+    /// None: the deadline came first.
+    Deadline,
+}
+
+impl Certificate {
+    /// The verdict that it certifies.
+    pub fn verdict(self) -> Verdict {
+        match self {
+            Self::InnerBalls | Self::Modes => Verdict::Hit,
+            Self::OuterBalls => Verdict::Free,
+            Self::None | Self::Deadline => Verdict::Undecided,
+        }
+    }
+
+    /// Name in tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::InnerBalls => "inner_balls",
+            Self::OuterBalls => "outer_balls",
+            Self::Modes => "modes",
+            Self::None => "none",
+            Self::Deadline => "deadline",
+        }
+    }
+}
+
+/// Bounds of the signed distance of two solids.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct DistanceBounds {
+    /// Lower bound.
+    pub low: f64,
+    /// Upper bound.
+    pub high: f64,
+    /// Points on the closest pair of inner balls, of A and of B, in A's frame: the ends of the gap, or of the depth.
+    pub witnesses: [[f64; 3]; 2],
+}
+
+/// Results for one pose.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct CollisionReport {
+    /// Whether the solids come closer than the margin.
+    pub verdict: Verdict,
+    /// Certificate of the verdict.
+    pub certificate: Certificate,
+    /// Bounds of the signed distance, if requested.
+    pub distance: Option<DistanceBounds>,
+    /// Shared volume, if requested.
+    pub shared_volume: Option<SharedVolume>,
+    /// Overlap energy, force and torque, if requested.
+    pub contact: Option<Contact>,
+    /// Pairs of balls that were compared.
+    pub ball_pairs: usize,
+    /// Fourier modes that were summed.
+    pub modes: usize,
+    /// Wall time, in seconds.
+    pub seconds: f64,
+}
+
+/// Collision of a fixed solid and a moving one. Alone it computes verdicts; other quantities are requested.
+///
+/// ```
+/// use knotdock::Collision;
+/// use knotdock_scoring::se3::Pose;
+/// use knotdock_structures::Ball;
+/// use knotdock_structures::ball_solid::BallSolid;
+///
+/// let ball = Ball { center: [0.0; 3], radius: 1.0 };
+/// let (a, b) = (BallSolid::from_balls(&[ball], None)?, BallSolid::from_balls(&[ball], None)?);
+/// let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [2.25, 0.0, 0.0]);
+///
+/// let report = Collision::new(&a, &b).margin(0.5).distance(true).at(&pose)?;
+/// assert_eq!(report.verdict.name(), "hit");
+/// assert_eq!(report.distance.unwrap().high, 0.25);
+/// # Ok::<(), knotdock::Error>(())
+/// ```
+#[derive(Clone, Debug)]
+pub struct Collision<'a> {
+    solids: [&'a BallSolid; 2],
+    margin: f64,
+    method: Method,
+    max_modes: usize,
+    deadline: Option<Duration>,
+    distance: bool,
+    shared_volume: bool,
+    force: bool,
+    densities: OnceLock<Densities>,
+}
+
+impl<'a> Collision<'a> {
+    /// Collision of `fixed` (body A) and `moved` (body B), in one unit of length.
+    #[must_use]
+    pub fn new(fixed: &'a BallSolid, moved: &'a BallSolid) -> Self {
+        Self {
+            solids: [fixed, moved],
+            margin: 0.0,
+            method: Method::Auto,
+            max_modes: DEFAULT_MAX_MODES,
+            deadline: None,
+            distance: false,
+            shared_volume: false,
+            force: false,
+            densities: OnceLock::new(),
+        }
+    }
+
+    /// Sets the distance below which solids collide, in the files' unit; not negative.
+    #[must_use]
+    pub fn margin(self, margin: f64) -> Self {
+        let densities = OnceLock::new();
+        Self {
+            margin,
+            densities,
+            ..self
+        }
+    }
+
+    /// Sets how verdicts and forces are computed.
+    #[must_use]
+    pub fn method(self, method: Method) -> Self {
+        let densities = OnceLock::new();
+        Self {
+            method,
+            densities,
+            ..self
+        }
+    }
+
+    /// Sets the maximum number of Fourier modes, conjugates included.
+    #[must_use]
+    pub fn max_modes(self, max_modes: usize) -> Self {
+        let densities = OnceLock::new();
+        Self {
+            max_modes,
+            densities,
+            ..self
+        }
+    }
+
+    /// Sets the time for one pose: bounds are then the best known by its end, which depend on the machine.
+    #[must_use]
+    pub fn deadline(self, deadline: Option<Duration>) -> Self {
+        Self { deadline, ..self }
+    }
+
+    /// Requests bounds of the signed distance.
+    #[must_use]
+    pub fn distance(self, distance: bool) -> Self {
+        Self { distance, ..self }
+    }
+
+    /// Requests the shared volume.
+    #[must_use]
+    pub fn shared_volume(self, shared_volume: bool) -> Self {
+        Self {
+            shared_volume,
+            ..self
+        }
+    }
+
+    /// Requests overlap energy, force and torque.
+    #[must_use]
+    pub fn force(self, force: bool) -> Self {
+        Self { force, ..self }
+    }
+
+    /// `eps_A` + `eps_B`: how far the distance of outer balls is below that of inner ones.
+    pub fn band(&self) -> f64 {
+        self.solids[0].epsilon() + self.solids[1].epsilon()
+    }
+
+    /// Results for one pose.
+    ///
+    /// # Errors
+    /// [`Error`] if the margin is negative or not finite.
+    pub fn at(&self, pose: &Pose) -> Result<CollisionReport, Error> {
+        self.prepare()?;
+        Ok(self.query(pose, &mut Workspace::default()).report())
+    }
+
+    /// Results for many poses, in their order, on the threads of the caller's pool.
+    ///
+    /// # Errors
+    /// As [`Self::at`].
+    pub fn at_each(&self, poses: &[Pose]) -> Result<Vec<CollisionReport>, Error> {
+        self.prepare()?;
+        let chunks = poses.par_chunks(POSES_PER_TASK);
+        let reports = chunks.map_init(Workspace::default, |work, poses| {
+            let reports = poses.iter().map(|pose| self.query(pose, work).report());
+            reports.collect::<Vec<_>>()
+        });
+        Ok(reports.flatten_iter().collect())
+    }
+
+    /// Checks the margin, and makes the densities that the requested quantities need.
+    ///
+    /// # Errors
+    /// As [`Self::at`].
+    pub fn prepare(&self) -> Result<(), Error> {
+        if !(self.margin >= 0.0 && self.margin.is_finite()) {
+            return Err(Error::input(format!("the margin is {}", self.margin))
+                .help("give a finite margin, 0 or above"));
+        }
+        if (self.force || self.method == Method::Modes) && self.densities.get().is_none() {
+            let densities = Densities::new(self)?;
+            self.densities.get_or_init(|| densities);
+        }
+        Ok(())
+    }
+
+    /// Computation of single quantities at a pose, with the buffers of the caller. Forces, and verdicts by modes, need
+    /// [`Self::prepare`] first.
+    pub fn query<'q>(&'q self, pose: &Pose, work: &'q mut Workspace) -> CollisionQuery<'q> {
+        let start = Instant::now();
+        CollisionQuery {
+            collision: self,
+            motion: self.motion(pose),
+            start,
+            end: self.deadline.and_then(|time| start.checked_add(time)),
+            ball_pairs: 0,
+            modes: 0,
+            work,
+        }
+    }
+
+    fn trees(&self) -> [&'a BallHierarchy; 2] {
+        self.solids.map(BallSolid::hierarchy)
+    }
+
+    /// The motion of B's stored coordinates into A's.
+    fn motion(&self, pose: &Pose) -> Motion {
+        let matrix = pose.rotation.to_rotation_matrix();
+        let [a, b] = self.solids.map(BallSolid::origin);
+        let moved = pose.apply(b);
+        Motion {
+            rows: [0, 1, 2].map(|row| [0, 1, 2].map(|column| matrix[(row, column)])),
+            shift: [0, 1, 2].map(|axis| moved[axis] - a[axis]),
+        }
+    }
+}
+
+/// Buffers of one thread.
+#[derive(Default)]
+pub struct Workspace {
+    search: ClosestSearch,
+    pairs: MeetingPairs,
+    marks: [Vec<bool>; 2],
+    modes: Option<ModesWorkspace>,
+}
+
+/// One pose of a [`Collision`], with its deadline and counters.
+pub struct CollisionQuery<'q> {
+    collision: &'q Collision<'q>,
+    motion: Motion,
+    start: Instant,
+    end: Option<Instant>,
+    ball_pairs: usize,
+    modes: usize,
+    work: &'q mut Workspace,
+}
+
+impl CollisionQuery<'_> {
+    /// Everything that the collision requests.
+    fn report(mut self) -> CollisionReport {
+        let certificate = self.certificate();
+        let contact = match self.collision.force {
+            true => self.contact(),
+            false => None,
+        };
+        let distance = self.collision.distance.then(|| self.distance());
+        let shared_volume = self.collision.shared_volume.then(|| self.shared_volume());
+        CollisionReport {
+            verdict: certificate.verdict(),
+            certificate,
+            distance,
+            shared_volume,
+            contact,
+            ball_pairs: self.ball_pairs,
+            modes: self.modes,
+            seconds: self.start.elapsed().as_secs_f64(),
+        }
+    }
+
+    /// The verdict, by its certificate.
+    pub fn certificate(&mut self) -> Certificate {
+        match self.collision.method {
+            Method::Modes => self.certificate_by_modes(),
+            _ => self.certificate_by_trees(),
+        }
+    }
+
+    fn certificate_by_trees(&mut self) -> Certificate {
+        let margin = self.collision.margin;
+        let limits = Limits {
+            ignored_from: margin + self.collision.band(),
+            enough_below: margin,
+        };
+        let closest = self.closest(&limits);
+        if closest.distance < margin {
+            Certificate::InnerBalls
+        } else if closest.lower >= limits.ignored_from {
+            Certificate::OuterBalls
+        } else if closest.finished {
+            Certificate::None
+        } else {
+            Certificate::Deadline
+        }
+    }
+
+    /// Bounds of the signed distance.
+    pub fn distance(&mut self) -> DistanceBounds {
+        let closest = self.closest(&Limits::NONE);
+        let mut low = closest.lower - self.collision.band();
+        if low < 0.0 {
+            low = -self.separation(&closest);
+        }
+        DistanceBounds {
+            low,
+            high: closest.distance,
+            witnesses: self.witnesses(closest.pair.unwrap_or([0, 0])),
+        }
+    }
+
+    /// The closest pair of inner balls within limits, as far as the deadline allows.
+    fn closest(&mut self, limits: &Limits) -> Closest {
+        let (trees, motion) = (self.collision.trees(), &self.motion);
+        let pairs = match self.end {
+            Some(_) => PAIRS_PER_CLOCK_CHECK,
+            None => usize::MAX,
+        };
+        self.work.search.begin(trees, motion, limits);
+        loop {
+            let closest = self.work.search.advance(trees, motion, limits, pairs);
+            if closest.finished || has_come(self.end) {
+                self.ball_pairs += closest.ball_pairs;
+                return closest;
+            }
+        }
+    }
+
+    /// Points of two balls on the line of their centres, in A's file frame.
+    fn witnesses(&self, [first, second]: [usize; 2]) -> [[f64; 3]; 2] {
+        let [a, b] = self.collision.solids;
+        let origin = a.origin();
+        let (a, b) = (a.inner()[first], b.inner()[second]);
+        let center = self.motion.apply(b.center);
+        let direction = unit([0, 1, 2].map(|axis| center[axis] - a.center[axis]));
+        let on = |center: [f64; 3], radius: f64| {
+            [0, 1, 2].map(|axis| origin[axis] + center[axis] + radius * direction[axis])
+        };
+        [on(a.center, a.radius), on(center, -b.radius)]
+    }
+}
+
+/// Whether a deadline has come.
+fn has_come(end: Option<Instant>) -> bool {
+    end.is_some_and(|end| Instant::now() >= end)
+}
+
+/// The direction of a vector; x for the zero vector.
+fn unit(vector: [f64; 3]) -> [f64; 3] {
+    let length = length(vector);
+    if length > 0.0 {
+        vector.map(|part| part / length)
+    } else {
+        [1.0, 0.0, 0.0]
+    }
+}
+
+fn length(vector: [f64; 3]) -> f64 {
+    vector.iter().fold(0.0f64, |sum, part| sum.hypot(*part))
+}
+
 #[cfg(test)]
 mod tests;
-
-pub use answer::{Answer, Quantities, Questions, Ways};
-pub use contact::{Contact, Method};
-pub use scene::{Bounds, Certificate, CollisionScene, Deadline, Found, Verdict, Workspace};

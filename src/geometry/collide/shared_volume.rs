@@ -9,13 +9,14 @@
 use std::f64::consts::PI;
 
 use knotdock_structures::Ball;
-use knotdock_structures::ball_solid::{BallSolid, Motion};
+use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::ball_union::{self, Volume, lens_volume};
 
-use super::scene::{CollisionScene, Deadline, PAIRS_A_LOOK, Workspace};
+use super::{CollisionQuery, PAIRS_PER_CLOCK_CHECK, has_come};
 
 /// A volume and how far the true one may be from it.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[non_exhaustive]
 pub struct SharedVolume {
     /// The middle of the range, in the cube of the files' unit.
     pub value: f64,
@@ -33,44 +34,41 @@ impl SharedVolume {
     }
 }
 
-impl CollisionScene {
+impl CollisionQuery<'_> {
     /// The volume of the region that lies in both solids.
-    pub fn shared_volume(
-        &self,
-        motion: &Motion,
-        deadline: Deadline,
-        work: &mut Workspace,
-    ) -> SharedVolume {
-        if deadline.is_set() {
-            return self.volume_by_pairs(motion, deadline, work);
+    pub fn shared_volume(&mut self) -> SharedVolume {
+        if self.end.is_some() {
+            return self.volume_by_pairs();
         }
-        let inner = self.shared(motion, 0.0, work);
-        if self.band() == 0.0 {
+        let band = self.collision.band();
+        let inner = self.shared(0.0);
+        if band == 0.0 {
             return SharedVolume {
                 value: inner.value,
                 bound: inner.error,
             };
         }
-        let outer = self.shared(motion, self.band(), work);
+        let outer = self.shared(band);
         SharedVolume::between(inner.value - inner.error, outer.value + outer.error)
     }
 
-    /// Bounds from the pairs of balls that meet; of a visit that the deadline ends, from the balls about all of them.
-    fn volume_by_pairs(
-        &self,
-        motion: &Motion,
-        deadline: Deadline,
-        work: &mut Workspace,
-    ) -> SharedVolume {
-        let trees = self.trees();
-        let [a, b] = self.solids().each_ref().map(|solid| solid.epsilon());
-        let Workspace { pairs, marks, .. } = work;
-        for (marks, tree) in marks.iter_mut().zip(trees) {
+    /// Clears the marks of balls.
+    fn clear_marks(&mut self) {
+        let trees = self.collision.trees();
+        for (marks, tree) in self.work.marks.iter_mut().zip(trees) {
             marks.clear();
             marks.resize(tree.balls().len(), false);
         }
+    }
+
+    /// Bounds from the pairs of balls that meet; if the deadline ends the visit, from the balls about all of them.
+    fn volume_by_pairs(&mut self) -> SharedVolume {
+        self.clear_marks();
+        let (trees, band) = (self.collision.trees(), self.collision.band());
+        let [a, b] = self.collision.solids.map(BallSolid::epsilon);
+        let (pairs, marks) = (&mut self.work.pairs, &mut self.work.marks);
         let (mut low, mut high, mut seen) = (0.0f64, [0.0f64; 2], 0usize);
-        let all = pairs.visit(trees, motion, self.band(), |[i, j], moved, squared| {
+        let all = pairs.visit(trees, &self.motion, band, |[i, j], moved, squared| {
             let first = trees[0].balls()[i];
             let grown = [(0, i, first.radius + a), (1, j, moved.radius + b)];
             for (side, ball, radius) in grown {
@@ -80,51 +78,46 @@ impl CollisionScene {
             }
             low = low.max(lens_volume(first.radius, moved.radius, squared.sqrt()));
             seen += 1;
-            !seen.is_multiple_of(PAIRS_A_LOOK) || !deadline.has_come()
+            !seen.is_multiple_of(PAIRS_PER_CLOCK_CHECK) || !has_come(self.end)
         });
         let bounds = [0, 1].map(|side| match trees[side].bound() {
-            Some(bound) if !all => ball_volume(bound.radius + self.band()),
+            Some(bound) if !all => ball_volume(bound.radius + band),
             _ => high[side],
         });
         SharedVolume::between(low, bounds[0].min(bounds[1]))
     }
 
     /// Shared volume of the inner balls, or of the outer ones if `band` is above zero.
-    fn shared(&self, motion: &Motion, band: f64, work: &mut Workspace) -> Volume {
-        let trees = self.trees();
-        let Workspace { pairs, marks, .. } = work;
-        for (marks, tree) in marks.iter_mut().zip(trees) {
-            marks.clear();
-            marks.resize(tree.balls().len(), false);
-        }
+    fn shared(&mut self, band: f64) -> Volume {
+        self.clear_marks();
+        let (trees, motion) = (self.collision.trees(), &self.motion);
+        let (pairs, marks) = (&mut self.work.pairs, &mut self.work.marks);
         pairs.visit(trees, motion, band, |[i, j], _, _| {
             marks[0][i] = true;
             marks[1][j] = true;
             true
         });
-        let grown = |solid: usize| {
-            if band > 0.0 {
-                self.solids()[solid].epsilon()
-            } else {
-                0.0
-            }
-        };
-        let first = marked(trees[0].balls(), &marks[0], grown(0), |center| center);
-        let second = marked(trees[1].balls(), &marks[1], grown(1), |center| {
+        let [a, b] = self.collision.solids.map(|solid| match band > 0.0 {
+            true => solid.epsilon(),
+            false => 0.0,
+        });
+        let first = marked(trees[0].balls(), &marks[0], a, |center| center);
+        let second = marked(trees[1].balls(), &marks[1], b, |center| {
             motion.apply(center)
         });
         let mut volume = ball_union::shared_volume(&first, &second);
-        // A place that is rounded moves each sphere by so much.
+        // Rounding of a place moves each sphere.
         let spheres = [&first, &second].map(|balls| balls.iter().map(sphere).sum::<f64>());
-        volume.error += self.rounding(motion) * spheres[0].min(spheres[1]);
+        volume.error += self.rounding() * spheres[0].min(spheres[1]);
         volume
     }
 
     /// How far the rounding of a pose and of coordinates moves a ball of B in A's frame.
-    fn rounding(&self, motion: &Motion) -> f64 {
-        let places = self.solids().each_ref().map(BallSolid::origin);
-        let places = places.iter().chain([&motion.shift]).flatten();
-        let reach: f64 = self.solids().iter().map(BallSolid::reach).sum();
+    fn rounding(&self) -> f64 {
+        let solids = self.collision.solids;
+        let places = solids.map(BallSolid::origin);
+        let places = places.iter().chain([&self.motion.shift]).flatten();
+        let reach: f64 = solids.iter().map(|solid| solid.reach()).sum();
         4.0 * f64::EPSILON * (reach + places.map(|part| part.abs()).sum::<f64>())
     }
 }

@@ -6,10 +6,11 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::Ball;
 use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::mesh::{self, Solid};
+use knotdock_structures::sampling::ball_tree::BallTree;
 
-use super::contact::{Densities, Method};
-use super::impact::first_impact;
-use super::{Bounds, Certificate, CollisionScene, Deadline, Found, Verdict, Workspace};
+use super::{Certificate, Collision, CollisionReport, DistanceBounds, Method, Verdict};
+use crate::geometry::bracket::Bracket;
+use crate::geometry::obstacle::obstacle;
 
 fn balls(list: &[([f64; 3], f64)]) -> BallSolid {
     let balls: Vec<Ball> = list
@@ -52,7 +53,7 @@ fn cuboid(half: [f64; 3], inward: bool) -> (Vec<[f64; 3]>, Vec<[u32; 3]>) {
     ((0..8).map(corner).collect(), faces.to_vec())
 }
 
-pub fn solid(parts: &[([f64; 3], bool)], per_axis: usize) -> BallSolid {
+fn solid(parts: &[([f64; 3], bool)], per_axis: usize) -> BallSolid {
     let mut corners = Vec::new();
     let mut faces = Vec::new();
     for &(half, inward) in parts {
@@ -71,18 +72,18 @@ fn at(translation: [f64; 3]) -> Pose {
     Pose::from_parts([1.0, 0.0, 0.0, 0.0], translation)
 }
 
-fn ask(scene: &CollisionScene, pose: &Pose) -> (Found, Bounds) {
-    let mut work = Workspace::new();
-    let motion = scene.motion(pose);
-    (
-        scene.verdict(&motion, Deadline::NEVER, &mut work),
-        scene.distance(&motion, Deadline::NEVER, &mut work),
-    )
+fn collision(solids: &[BallSolid; 2]) -> Collision<'_> {
+    Collision::new(&solids[0], &solids[1])
+}
+
+fn ask(solids: &[BallSolid; 2], pose: &Pose) -> (CollisionReport, DistanceBounds) {
+    let report = collision(solids).distance(true).at(pose).unwrap();
+    (report, report.distance.unwrap())
 }
 
 #[test]
 fn two_balls_are_exact() {
-    let scene = CollisionScene::new([ball(1.0), ball(0.5)], 0.0);
+    let scene = [ball(1.0), ball(0.5)];
     for (x, verdict) in [
         (3.0, Verdict::Free),
         (1.5, Verdict::Free),
@@ -106,9 +107,15 @@ fn two_balls_are_exact() {
 
 #[test]
 fn a_margin_is_a_distance() {
-    let scene = CollisionScene::new([ball(1.0), ball(0.5)], 0.25);
+    let scene = [ball(1.0), ball(0.5)];
     for (x, verdict) in [(1.74, Verdict::Hit), (1.76, Verdict::Free)] {
-        assert_eq!(ask(&scene, &at([x, 0.0, 0.0])).0.verdict, verdict);
+        let report = collision(&scene).margin(0.25).at(&at([x, 0.0, 0.0]));
+        assert_eq!(report.unwrap().verdict, verdict);
+    }
+    for margin in [-1.0, f64::NAN, f64::INFINITY] {
+        let refused = collision(&scene).margin(margin).at(&at([0.0; 3]));
+        let error = refused.unwrap_err();
+        assert!(error.is_input() && error.remedy().is_some(), "{error}");
     }
 }
 
@@ -116,7 +123,7 @@ fn a_margin_is_a_distance() {
 fn a_box_and_a_ball() {
     let block = solid(&[([1.0, 0.6, 0.4], false)], 24);
     let band = block.epsilon();
-    let scene = CollisionScene::new([block, ball(0.5)], 0.0);
+    let scene = [block, ball(0.5)];
     // Above a face, beyond an edge, beyond a corner, and through a face: exact signed distances.
     let slope = (0.3f64 * 0.3 + 0.4 * 0.4).sqrt();
     let corner = (0.3f64 * 0.3 * 3.0).sqrt();
@@ -152,10 +159,10 @@ fn a_box_and_a_ball() {
 #[test]
 fn containment_is_a_hit_and_a_hollow_is_free() {
     let block = solid(&[([1.0; 3], false)], 24);
-    let scene = CollisionScene::new([block, ball(0.2)], 0.0);
+    let scene = [block, ball(0.2)];
     assert_eq!(ask(&scene, &at([0.1, -0.1, 0.2])).0.verdict, Verdict::Hit);
     let shell = solid(&[([1.0; 3], false), ([0.8; 3], true)], 32);
-    let scene = CollisionScene::new([shell, ball(0.3)], 0.0);
+    let scene = [shell, ball(0.3)];
     let (found, bounds) = ask(&scene, &at([0.1, 0.0, 0.0]));
     assert_eq!(found.verdict, Verdict::Free);
     assert!(
@@ -173,7 +180,7 @@ fn penetration_depth_of_nested_solids() {
         .map(|i| f64::from(i) * std::f64::consts::TAU / 36.0)
         .map(|turn| ([turn.cos(), turn.sin(), 0.0], 0.3))
         .collect();
-    let scene = CollisionScene::new([balls(&ring), ball(0.8)], 0.0);
+    let scene = [balls(&ring), ball(0.8)];
     let (found, bounds) = ask(&scene, &at([0.0; 3]));
     assert_eq!(found.verdict, Verdict::Hit);
     // All pairs are 0.1 deep; along z the ball must go until it rests on the ring.
@@ -191,7 +198,7 @@ fn far_small_and_uneven_solids() {
             ([-offset, offset, 0.0], size),
             ([-offset + 1.5 * size, offset, 0.0], 1e-6 * size),
         ]);
-        let scene = CollisionScene::new([one, other], 0.0);
+        let scene = [one, other];
         for (gap, verdict) in [(0.1, Verdict::Free), (-0.1, Verdict::Hit)] {
             let pose = at([2.0 * offset, -2.0 * offset, offset + (2.0 + gap) * size]);
             let (found, bounds) = ask(&scene, &pose);
@@ -205,32 +212,28 @@ fn far_small_and_uneven_solids() {
 fn deadlines_bracket() {
     let block = solid(&[([1.0, 0.6, 0.4], false)], 24);
     let other = solid(&[([0.7, 0.3, 0.9], false)], 24);
-    let scene = CollisionScene::new([block, other], 0.0);
+    let scene = [block, other];
     let pose = Pose::from_parts([0.9, 0.1, -0.3, 0.2], [1.4, 0.7, 0.4]);
-    let motion = scene.motion(&pose);
-    let mut work = Workspace::new();
-    let whole = scene.distance(&motion, Deadline::NEVER, &mut work);
-    let now = Deadline::after(Some(Duration::ZERO));
-    let early = scene.distance(&motion, now, &mut work);
-    assert!(early.low <= whole.high && early.high >= whole.high);
-    let found = scene.verdict(&motion, now, &mut work);
-    let final_verdict = scene.verdict(&motion, Deadline::NEVER, &mut work);
-    assert!(found == final_verdict || found.certificate == Certificate::Deadline);
+    let (whole, all) = ask(&scene, &pose);
+    let hurried = collision(&scene).deadline(Some(Duration::ZERO));
+    let early = hurried.distance(true).at(&pose).unwrap();
+    let bounds = early.distance.unwrap();
+    assert!(bounds.low <= all.high && bounds.high >= all.high);
+    assert!(early.certificate == whole.certificate || early.certificate == Certificate::Deadline);
 }
 
 #[test]
 fn forces_are_slopes_of_the_energy() {
     let block = solid(&[([1.0, 0.6, 0.4], false)], 20);
     let other = solid(&[([0.7, 0.3, 0.9], false)], 20);
-    let scene = CollisionScene::new([block, other], 0.0);
-    let densities = Densities::new(&scene, 2.0, Method::Tree, 0).unwrap();
-    let mut work = Workspace::new();
-    let mut contact = |pose: &Pose| densities.contact(&scene, &scene.motion(pose), &mut work);
+    let scene = [block, other];
+    let forces = collision(&scene).method(Method::Tree).force(true);
+    let contact = |pose: &Pose| forces.at(pose).unwrap().contact.unwrap();
     let pose = Pose::from_parts([0.9, 0.1, -0.3, 0.2], [0.9, 0.3, 0.2]);
     let here = contact(&pose);
     assert!(here.energy > 0.01);
     let step = 1e-5;
-    let [_, b] = scene.solids();
+    let [_, b] = &scene;
     let center = pose.apply([0, 1, 2].map(|axis| b.origin()[axis] + b.centroid()[axis]));
     for axis in 0..3 {
         let mut shift = [0.0; 3];
@@ -268,27 +271,23 @@ fn forces_are_slopes_of_the_energy() {
 fn modes_agree_with_pairs_and_certify_hits_only() {
     let block = solid(&[([1.0, 0.6, 0.4], false)], 16);
     let other = solid(&[([0.7, 0.3, 0.9], false)], 16);
-    let scene = CollisionScene::new([block, other], 0.0);
-    let by = |method| Densities::new(&scene, 2.0, method, 6000).unwrap();
-    let [pairs, modes] = [by(Method::Tree), by(Method::Modes)];
-    let mut work = Workspace::new();
+    let scene = [block, other];
+    let by = |method| collision(&scene).method(method).max_modes(6000).force(true);
+    let [pairs, modes] = [Method::Tree, Method::Modes].map(by);
     let mut hits = 0;
     for step in 0..100 {
         let part = |by: f64| 2.0 * (f64::from(step) * by).fract() - 1.0;
         let rotation = [part(0.8191), part(0.671), part(0.5497), part(0.4503)];
         let pose = Pose::from_parts(rotation, [part(0.31), 0.7 * part(0.77), 0.7 * part(0.19)]);
-        let motion = scene.motion(&pose);
-        let exact = pairs.contact(&scene, &motion, &mut work);
-        let summed = modes.contact(&scene, &motion, &mut work);
+        let [by_pairs, by_modes] = [&pairs, &modes].map(|way| way.at(&pose).unwrap());
+        let [exact, summed] = [by_pairs, by_modes].map(|report| report.contact.unwrap());
         assert!(
             (exact.energy - summed.energy).abs() <= exact.bound + summed.bound,
             "{step}"
         );
-        let (found, _) = modes.verdict(&motion, Deadline::NEVER, &mut work);
-        assert_ne!(found.verdict, Verdict::Free);
-        if found.verdict == Verdict::Hit {
-            let by_tree = scene.verdict(&motion, Deadline::NEVER, &mut work);
-            assert_eq!(by_tree.verdict, Verdict::Hit, "{step}");
+        assert_ne!(by_modes.verdict, Verdict::Free);
+        if by_modes.verdict == Verdict::Hit {
+            assert_eq!(by_pairs.verdict, Verdict::Hit, "{step}");
             hits += 1;
         }
     }
@@ -298,21 +297,20 @@ fn modes_agree_with_pairs_and_certify_hits_only() {
 /// A ball that flies at another one: contact at the time of the closed form.
 #[test]
 fn the_time_of_impact_of_two_balls() {
-    let scene = CollisionScene::new([ball(1.0), ball(0.5)], 0.0);
-    let mut work = Workspace::new();
+    let scene = [ball(1.0), ball(0.5)];
     let path = [
         at([5.0, 0.9, 0.0]),
         at([3.0, 0.9, 0.0]),
         at([-3.0, 0.9, 0.0]),
     ];
-    let found = first_impact(&scene, &path, 1e-9, &mut work);
+    let found = collision(&scene).first_impact(&path);
     // Contact at x = 1.2.
     assert!((found.free_until - 1.3).abs() < 1e-6, "{found:?}");
     assert!(found.pose.is_some() && found.steps < 200);
     let hit_by = found.hit_by.unwrap();
     assert!(hit_by > 1.3 && hit_by < 1.3 + 1e-6, "{found:?}");
     let past = [at([5.0, 1.6, 0.0]), at([-5.0, 1.6, 0.0])];
-    let found = first_impact(&scene, &past, 1e-9, &mut work);
+    let found = collision(&scene).first_impact(&past);
     assert_eq!((found.pose, found.free_until), (None, 1.0));
     assert_eq!(found.hit_by, None);
 }
@@ -326,8 +324,8 @@ fn the_time_of_impact_of_meshes_is_between_bounds() {
     let mut widths = Vec::new();
     for per_axis in [12, 24] {
         let bar = solid(&[([0.4, 0.4, 0.6], false)], per_axis);
-        let scene = CollisionScene::new([slot.clone(), bar], 0.0);
-        let found = first_impact(&scene, &path, 1e-6, &mut Workspace::new());
+        let scene = [slot.clone(), bar];
+        let found = collision(&scene).first_impact(&path);
         let (low, high) = (found.free_until, found.hit_by.unwrap());
         assert!(low <= 0.45 && 0.45 <= high, "{found:?}");
         widths.push(high - low);
@@ -337,33 +335,72 @@ fn the_time_of_impact_of_meshes_is_between_bounds() {
 
 #[test]
 fn shared_volume_of_two_balls_is_the_lens() {
-    let scene = CollisionScene::new([ball(1.0), ball(0.8)], 0.0);
-    let mut work = Workspace::new();
+    let scene = [ball(1.0), ball(0.8)];
     let d = 1.1f64;
-    let motion = scene.motion(&at([d, 0.0, 0.0]));
-    let volume = scene.shared_volume(&motion, Deadline::NEVER, &mut work);
+    let volume = |x: f64, time: Option<Duration>| {
+        let volumes = collision(&scene).shared_volume(true).deadline(time);
+        let report = volumes.at(&at([x, 0.0, 0.0])).unwrap();
+        report.shared_volume.unwrap()
+    };
+    let shared = volume(d, None);
     let (r, s) = (1.0f64, 0.8f64);
     let exact = std::f64::consts::PI
         * (r + s - d).powi(2)
         * (d * d + 2.0 * d * (r + s) - 3.0 * (r - s).powi(2))
         / (12.0 * d);
     assert!(
-        (volume.value - exact).abs() <= volume.bound && volume.bound < 1e-12,
-        "{volume:?} {exact}"
+        (shared.value - exact).abs() <= shared.bound && shared.bound < 1e-12,
+        "{shared:?} {exact}"
     );
     // A deadline leaves bounds by balls, whether it comes or not.
     for time in [Duration::ZERO, Duration::from_secs(60)] {
-        let quick = scene.shared_volume(&motion, Deadline::after(Some(time)), &mut work);
+        let quick = volume(d, Some(time));
         assert!(
             (quick.value - exact).abs() <= quick.bound + 1e-12,
             "{quick:?} {exact}"
         );
     }
-    let motion = scene.motion(&at([1.9, 0.0, 0.0]));
-    assert_eq!(
-        scene
-            .shared_volume(&motion, Deadline::NEVER, &mut work)
-            .value,
-        0.0
+    assert_eq!(volume(1.9, None).value, 0.0);
+}
+
+/// A translation lies in the obstacle where collide finds a hit, and only there: two ways to one question (eq. 29 and
+/// 50), of 10,000 poses at 20 rotations, inner and outer balls alike.
+#[test]
+fn the_obstacle_agrees_with_the_verdicts() {
+    let (block, other) = (
+        solid(&[([1.0, 0.6, 0.4], false)], 8),
+        solid(&[([0.7, 0.3, 0.9], false)], 8),
     );
+    let [a, b] = [&block, &other].map(Bracket::from);
+    let scene = [block, other];
+    let mut counts = [0; 3];
+    for turn in 0..20 {
+        let part = |by: f64| 2.0 * (f64::from(turn) * by).fract() - 1.0;
+        let rotation = [0.3 + part(0.8191), part(0.671), part(0.5497), part(0.4503)];
+        let turned = Pose::from_parts(rotation, [0.0; 3]);
+        let found = obstacle(&a, &b, &turned, 0.0);
+        let trees = [&found.inner, &found.outer].map(|balls| BallTree::new(balls));
+        for step in 0..500 {
+            let part = |by: f64| 2.2 * (2.0 * (f64::from(500 * turn + step) * by).fract() - 1.0);
+            let place = [part(0.7548), part(0.5698), part(0.3333)];
+            let pose = Pose {
+                rotation: turned.rotation,
+                translation: place.into(),
+            };
+            let relative = [0, 1, 2].map(|axis| place[axis] - found.origin[axis]);
+            let [inner, outer] = [0, 1].map(|set| trees[set].distance(relative, f64::NEG_INFINITY));
+            if inner.abs().min(outer.abs()) < 1e-9 {
+                continue;
+            }
+            let expected = match (inner < 0.0, outer < 0.0) {
+                (true, _) => Verdict::Hit,
+                (false, true) => Verdict::Undecided,
+                (false, false) => Verdict::Free,
+            };
+            let verdict = collision(&scene).at(&pose).unwrap().verdict;
+            assert_eq!(verdict, expected, "{turn} {step}: {inner} {outer}");
+            counts[verdict as usize] += 1;
+        }
+    }
+    assert!(counts.iter().all(|&count| count > 300), "{counts:?}");
 }

@@ -25,17 +25,17 @@ use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::kernel::product::{Band, ProductKernel};
 use knotdock_scoring::transform::modes::place;
 use knotdock_scoring::transform::truncation::Selection;
+use knotdock_structures::Error;
 use knotdock_structures::sampling::Ball;
 use knotdock_structures::sampling::ball_tree::BallTree;
 use num_complex::Complex64;
 
 use super::bracket::bounds;
-use super::obstacle::pairs::PairSums;
 use super::obstacle::reduce::reduced_sum;
 use expansion::{Expansion, Task};
 use grid::{Buffers, Grid};
 use spectrum::{Body, FrequencyBox, Kernel};
-use ways::{PlanningError, Points, direct, fast_3d, plan_3d};
+use ways::{Points, direct, fast_3d, plan_3d};
 
 /// Points at which all ways are held against the pairs.
 const CHECKED: usize = 24;
@@ -57,17 +57,6 @@ pub struct GapWay {
     pub residual: f64,
     /// Hausdorff error of the set in which a truncated function exceeds its residual, in the file's unit.
     pub hausdorff: Option<f64>,
-}
-
-/// Why the function could not be computed.
-#[derive(Debug, thiserror::Error)]
-pub enum GapError {
-    /// A transform could not be planned.
-    #[error(transparent)]
-    Planning(#[from] PlanningError),
-    /// The bumps' transform could not be made.
-    #[error("the bumps have no transform: {0}")]
-    Kernel(String),
 }
 
 /// Both bodies about their middles in one periodic cube that holds the sum of their extents.
@@ -95,8 +84,8 @@ fn body(balls: &[Ball]) -> Body {
 /// multiple of four.
 ///
 /// # Errors
-/// [`GapError`] where a transform cannot be planned.
-pub fn gap_ways(first: &[Ball], second: &[Ball], per_axis: usize) -> Result<Vec<GapWay>, GapError> {
+/// [`Error`] if a transform cannot be planned.
+pub fn gap_ways(first: &[Ball], second: &[Ball], per_axis: usize) -> Result<Vec<GapWay>, Error> {
     let scene = Scene::new([body(first), body(second)], per_axis)?;
     let points = scene.checked_points();
     let start = Instant::now();
@@ -118,32 +107,26 @@ pub fn gap_ways(first: &[Ball], second: &[Ball], per_axis: usize) -> Result<Vec<
         errors.fold(0.0, f64::max) / peak
     };
     let all = (per_axis - 1).pow(3);
-    let mut found = vec![
+    let whole = |name: &str, seconds: f64, residual: f64| GapWay {
+        name: name.to_owned(),
+        modes: Some(all),
+        seconds,
+        residual,
+        hausdorff: None,
+    };
+    let name = format!("pairs (timed at {} points)", points.len());
+    let mut ways = vec![
         GapWay {
-            name: format!("pairs (timed at {} points)", points.len()),
             modes: None,
-            seconds: pairs_seconds,
-            residual: 0.0,
-            hausdorff: None,
+            ..whole(&name, pairs_seconds, 0.0)
         },
-        GapWay {
-            name: "rasterise + FFT".to_owned(),
-            modes: Some(all),
-            seconds: fft_seconds,
-            residual: residual(&values),
-            hausdorff: None,
-        },
+        whole("rasterise + FFT", fft_seconds, residual(&values)),
     ];
     for name in ["NDFT", "NFFT"] {
         let start = Instant::now();
         let values = scene.back(&scene.without_grid(name == "NFFT")?);
-        found.push(GapWay {
-            name: name.to_owned(),
-            modes: Some(all),
-            seconds: start.elapsed().as_secs_f64(),
-            residual: residual(&values),
-            hausdorff: None,
-        });
+        let seconds = start.elapsed().as_secs_f64();
+        ways.push(whole(name, seconds, residual(&values)));
     }
     let blocked = scene.blocked();
     let mut most = all / 8;
@@ -166,20 +149,18 @@ pub fn gap_ways(first: &[Ball], second: &[Ball], per_axis: usize) -> Result<Vec<
         let worst = (truncated.iter().zip(&values))
             .map(|(truncated, value)| (truncated - value).abs())
             .fold(0.0, f64::max);
-        found.push(GapWay {
-            name: "truncated".to_owned(),
+        ways.push(GapWay {
             modes: Some(selection.modes()),
-            seconds,
-            residual: residual(&truncated),
             hausdorff: scene.hausdorff(&blocked, &truncated, worst),
+            ..whole("truncated", seconds, residual(&truncated))
         });
         most /= 8;
     }
-    Ok(found)
+    Ok(ways)
 }
 
 impl Scene {
-    fn new(bodies: [Body; 2], per_axis: usize) -> Result<Self, GapError> {
+    fn new(bodies: [Body; 2], per_axis: usize) -> Result<Self, Error> {
         let extents = bodies.each_ref().map(Body::extent);
         let edges = (0..3).map(|axis| extents[0][axis] + extents[1][axis]);
         let edge = edges.fold(0.0, f64::max) * (1.0 + 2.0 / per_axis as f64);
@@ -191,8 +172,7 @@ impl Scene {
             bodies,
             edge,
             grid: Grid::new(per_axis, edge),
-            kernel: Kernel::new(1.01 * most)
-                .map_err(|error| GapError::Kernel(error.to_string()))?,
+            kernel: Kernel::new(1.01 * most).map_err(Error::lasting)?,
         })
     }
 
@@ -227,7 +207,7 @@ impl Scene {
     }
 
     /// g at points by the sum over all pairs.
-    fn by_pairs(&self, points: &[usize]) -> Result<Vec<f64>, GapError> {
+    fn by_pairs(&self, points: &[usize]) -> Result<Vec<f64>, Error> {
         let [a, b] = &self.bodies;
         let largest = a.radius_range()[1].max(b.radius_range()[1]);
         let kernel = ProductKernel::new(
@@ -236,7 +216,7 @@ impl Scene {
             largest,
             1.0 / largest,
         )
-        .map_err(|error| GapError::Kernel(error.to_string()))?;
+        .map_err(Error::lasting)?;
         Ok(points
             .iter()
             .map(|&point| {
@@ -267,7 +247,7 @@ impl Scene {
     }
 
     /// The product of the spectra of both functions, from the balls alone.
-    fn without_grid(&self, fast: bool) -> Result<Vec<Complex64>, GapError> {
+    fn without_grid(&self, fast: bool) -> Result<Vec<Complex64>, Error> {
         let n = self.grid.per_axis;
         let frequencies = FrequencyBox { size: [n; 3] };
         let mut spectra = Vec::with_capacity(2);
@@ -323,7 +303,7 @@ impl Scene {
                 .collect()
         };
         let [a, b] = [balls(&self.bodies[0], 1.0), balls(&self.bodies[1], -1.0)];
-        let tree = BallTree::new(&reduced_sum(&PairSums::new(&a, &b, 0.0)));
+        let tree = BallTree::new(&reduced_sum(&a, &b, 0.0));
         let points = 0..self.grid.per_axis.pow(3);
         points
             .map(|point| tree.contains(self.translation(point)))

@@ -10,13 +10,12 @@
 use super::expansion::Expansion;
 use super::spectrum::{Body, FrequencyBox};
 use knotdock_scoring::transform::direct;
-use knotdock_scoring::transform::nufft::{
-    Plan, PlanError, SortedPoints, TransformError, Workspace,
-};
+use knotdock_scoring::transform::nufft::{Plan, SortedPoints, Workspace};
+use knotdock_structures::Error;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// A body ready for its transforms: what is the same at every turn of it is prepared, and is not timed.
+/// A body ready for its transforms: all that no rotation changes is prepared, and is not timed.
 pub struct Points<'a> {
     expansion: &'a Expansion,
     frequencies: FrequencyBox,
@@ -119,10 +118,10 @@ impl<const D: usize> Fast<D> {
         tolerance: f64,
         points: &[[f64; D]],
         outputs: usize,
-    ) -> Result<Self, PlanningError> {
-        let plan = Plan::new(modes, tolerance, points.len())?;
+    ) -> Result<Self, Error> {
+        let plan = Plan::new(modes, tolerance, points.len()).map_err(refused)?;
         Ok(Self {
-            sorted: plan.locate(points)?,
+            sorted: plan.locate(points).map_err(refused)?,
             work: plan.workspace(),
             sums: vec![vec![Complex64::default(); plan.mode_count()]; outputs],
             plan,
@@ -130,15 +129,9 @@ impl<const D: usize> Fast<D> {
     }
 }
 
-/// Why a fast transform could not be done.
-#[derive(Debug, thiserror::Error)]
-pub enum PlanningError {
-    /// It could not be planned.
-    #[error(transparent)]
-    Plan(#[from] PlanError),
-    /// Its input was refused.
-    #[error(transparent)]
-    Transform(#[from] TransformError),
+/// The error of a fast transform that cannot be done.
+fn refused(error: impl std::fmt::Display) -> Error {
+    Error::machine(error).help("take a coarser grid")
 }
 
 /// (x, y, z, r) of every ball, in units of the periods.
@@ -148,7 +141,7 @@ fn lifted(points: &Points) -> Vec<[f64; 4]> {
 }
 
 /// Plans [`fast_4d`].
-pub fn plan_4d(points: &Points, tolerance: f64) -> Result<Fast<4>, PlanningError> {
+pub fn plan_4d(points: &Points, tolerance: f64) -> Result<Fast<4>, Error> {
     let [a, b, c] = points.frequencies.half();
     // The series has an odd number of modes, from -most to most, as the transform numbers them.
     let modes = [a, b, c, points.expansion.len()];
@@ -156,14 +149,16 @@ pub fn plan_4d(points: &Points, tolerance: f64) -> Result<Fast<4>, PlanningError
 }
 
 /// One four-dimensional fast transform.
-pub fn fast_4d(points: &Points, fast: &mut Fast<4>) -> Result<Vec<Complex64>, PlanningError> {
-    fast.plan.locate_into(&lifted(points), &mut fast.sorted)?;
+pub fn fast_4d(points: &Points, fast: &mut Fast<4>) -> Result<Vec<Complex64>, Error> {
+    let located = fast.plan.locate_into(&lifted(points), &mut fast.sorted);
+    located.map_err(refused)?;
     // The fourth coordinate carries the functions of the radius; that of frequency zero is one, so that its weights
     // are the phases alone.
     let weights = &points.weights[points.expansion.len() / 2];
     let sums = &mut fast.sums[0];
     fast.plan
-        .forward(&fast.sorted, weights, &mut fast.work, sums)?;
+        .forward(&fast.sorted, weights, &mut fast.work, sums)
+        .map_err(refused)?;
     let functions = points.expansion.len();
     let mut output = points.values();
     points
@@ -175,17 +170,19 @@ pub fn fast_4d(points: &Points, fast: &mut Fast<4>) -> Result<Vec<Complex64>, Pl
 }
 
 /// Plans [`fast_3d`].
-pub fn plan_3d(points: &Points, tolerance: f64) -> Result<Fast<3>, PlanningError> {
+pub fn plan_3d(points: &Points, tolerance: f64) -> Result<Fast<3>, Error> {
     let modes = points.frequencies.half();
     Fast::new(modes, tolerance, &points.centers, points.expansion.len())
 }
 
 /// A three-dimensional fast transform for each function of the radius.
-pub fn fast_3d(points: &Points, fast: &mut Fast<3>) -> Result<Vec<Complex64>, PlanningError> {
-    fast.plan.locate_into(&points.centers, &mut fast.sorted)?;
+pub fn fast_3d(points: &Points, fast: &mut Fast<3>) -> Result<Vec<Complex64>, Error> {
+    let located = fast.plan.locate_into(&points.centers, &mut fast.sorted);
+    located.map_err(refused)?;
     for (weights, sums) in points.weights.iter().zip(&mut fast.sums) {
         fast.plan
-            .forward(&fast.sorted, weights, &mut fast.work, sums)?;
+            .forward(&fast.sorted, weights, &mut fast.work, sums)
+            .map_err(refused)?;
     }
     let mut output = points.values();
     points

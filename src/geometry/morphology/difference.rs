@@ -10,12 +10,13 @@
 //!
 //! Neither depends on how fine the grids are, only the width of the bracket does.
 
+use knotdock_structures::Error;
 use knotdock_structures::sampling::Ball;
 
+use super::MorphologyOptions;
 use super::complement::{Cube, hausdorff_bound, holding, inside, needed_in};
-use super::{MorphologyError, MorphologyOptions};
 use crate::geometry::bracket::{Bracket, bounds};
-use crate::geometry::obstacle::pairs::PairSums;
+use crate::geometry::obstacle::pair_sums;
 use crate::geometry::obstacle::reduce::reduced_sum;
 
 /// Cells of free space about A, so that nothing of the result touches the cube's faces.
@@ -24,12 +25,8 @@ const MARGIN: f64 = 2.0;
 /// A - B: the translations t with B + t inside A. Its eps is measured, infinite where no inner ball is left.
 ///
 /// # Errors
-/// [`MorphologyError::Memory`].
-pub fn difference(
-    a: &Bracket,
-    b: &Bracket,
-    options: &MorphologyOptions,
-) -> Result<Bracket, MorphologyError> {
+/// [`Error`] if memory has no room for the balls.
+pub fn difference(a: &Bracket, b: &Bracket, options: &MorphologyOptions) -> Result<Bracket, Error> {
     let (low, high) = b.bounds();
     let middle = [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis]));
     let reach = (0..3).map(|axis| 0.5 * (high[axis] - low[axis]));
@@ -48,8 +45,7 @@ pub fn difference(
     let sum = |mut outside: Vec<Ball>, others: &[Ball]| {
         let others = reflected(others);
         outside.sort_by(|a, b| b.radius.total_cmp(&a.radius));
-        let sums = PairSums::new(&outside, &others, 0.0);
-        let balls = needed_in(&result, sums.iter());
+        let balls = needed_in(&result, pair_sums(&outside, &others, 0.0));
         options.room_for(balls.len() as u64).map(|()| balls)
     };
     let inner = if a.inner.is_empty() {
@@ -59,11 +55,10 @@ pub fn difference(
         inside(&blocked, &result)
     };
     let outer = if b.inner.is_empty() {
-        // Of B only where it may be is known: A - B is inside A + (-B).
+        // Only the outer balls of B are known: A - B is inside A + (-B).
         let others = reflected(&b.outer);
-        let sums = PairSums::new(&a.outer, &others, 0.0);
-        options.room_for(sums.pairs())?;
-        reduced_sum(&sums)
+        options.room_for(a.outer.len() as u64 * others.len() as u64)?;
+        reduced_sum(&a.outer, &others, 0.0)
     } else {
         let blocked = sum(inside(&a.outer, &around), &b.inner)?;
         holding(&blocked, &result)

@@ -20,31 +20,16 @@ pub mod held_cells;
 pub mod products;
 pub mod sweep;
 
+use knotdock_structures::Error;
 use knotdock_structures::sampling::Ball;
 
 use super::bracket::Bracket;
 use super::obstacle::reduce::BYTES_REDUCED;
 use super::obstacle::sum;
+use crate::memory_size::{as_size, named};
 use difference::difference;
 
-/// Why an operation could not be done.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum MorphologyError {
-    /// More balls come about than memory has room for.
-    #[error(
-        "{balls} balls come about, which need {needed} bytes of memory, and {allowed} are allowed"
-    )]
-    Memory {
-        /// Balls before any is dropped.
-        balls: u64,
-        /// Bytes that they take at most.
-        needed: u64,
-        /// Bytes that are allowed.
-        allowed: u64,
-    },
-}
-
-/// Fineness of what is sampled, and limits.
+/// Fineness of sampled complements, and limits.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct MorphologyOptions {
     /// Nodes along each edge of the grid that complements are sampled on.
@@ -57,15 +42,17 @@ impl MorphologyOptions {
     /// Refuses more balls than memory has room for.
     ///
     /// # Errors
-    /// [`MorphologyError::Memory`].
-    pub fn room_for(&self, balls: u64) -> Result<(), MorphologyError> {
+    /// [`Error`] with the memory that they need.
+    pub fn room_for(&self, balls: u64) -> Result<(), Error> {
         let needed = balls.saturating_mul(BYTES_REDUCED);
         match self.memory {
-            Some(allowed) if needed > allowed => Err(MorphologyError::Memory {
-                balls,
-                needed,
-                allowed,
-            }),
+            Some(allowed) if needed > allowed => Err(Error::input(format!(
+                "{balls} balls come about, which need {needed} bytes of memory, and {allowed} are allowed"
+            ))
+            .help(format!(
+                "use a coarser --grid or --complement-grid, or fewer poses, or allow at least --memory {}",
+                as_size(named(needed))
+            ))),
             _ => Ok(()),
         }
     }
@@ -73,8 +60,8 @@ impl MorphologyOptions {
     /// Refuses the pairs of two solids, inner and outer, if memory has no room for them.
     ///
     /// # Errors
-    /// [`MorphologyError::Memory`].
-    pub fn room_for_pairs(&self, a: &Bracket, b: &Bracket) -> Result<(), MorphologyError> {
+    /// [`Error`] if memory has no room for the balls.
+    pub fn room_for_pairs(&self, a: &Bracket, b: &Bracket) -> Result<(), Error> {
         let pairs = |a: &[Ball], b: &[Ball]| a.len() as u64 * b.len() as u64;
         self.room_for(pairs(&a.inner, &b.inner).max(pairs(&a.outer, &b.outer)))
     }
@@ -83,12 +70,8 @@ impl MorphologyOptions {
 /// A + B.
 ///
 /// # Errors
-/// [`MorphologyError::Memory`].
-pub fn dilated(
-    a: &Bracket,
-    b: &Bracket,
-    options: &MorphologyOptions,
-) -> Result<Bracket, MorphologyError> {
+/// [`Error`] if memory has no room for the balls.
+pub fn dilated(a: &Bracket, b: &Bracket, options: &MorphologyOptions) -> Result<Bracket, Error> {
     options.room_for_pairs(a, b)?;
     Ok(sum(a, b, 0.0))
 }
@@ -96,12 +79,8 @@ pub fn dilated(
 /// The points within `distance` >= 0 of A, or, below zero, those of A that lie at least that deep.
 ///
 /// # Errors
-/// [`MorphologyError::Memory`].
-pub fn offset(
-    a: &Bracket,
-    distance: f64,
-    options: &MorphologyOptions,
-) -> Result<Bracket, MorphologyError> {
+/// [`Error`] if memory has no room for the balls.
+pub fn offset(a: &Bracket, distance: f64, options: &MorphologyOptions) -> Result<Bracket, Error> {
     if distance < 0.0 {
         return difference(a, &Bracket::ball(-distance), options);
     }
@@ -111,12 +90,8 @@ pub fn offset(
 /// The union of all copies of B that fit into A: (A - B) + B.
 ///
 /// # Errors
-/// [`MorphologyError::Memory`].
-pub fn opened(
-    a: &Bracket,
-    b: &Bracket,
-    options: &MorphologyOptions,
-) -> Result<Bracket, MorphologyError> {
+/// [`Error`] if memory has no room for the balls.
+pub fn opened(a: &Bracket, b: &Bracket, options: &MorphologyOptions) -> Result<Bracket, Error> {
     let fitting = difference(a, b, options)?;
     let mut opened = dilated(&fitting, b, options)?;
     opened.epsilon = complement::hausdorff_bound(&opened.inner, &opened.outer, options.per_axis);
@@ -126,12 +101,8 @@ pub fn opened(
 /// The complement of all copies of -B that fit outside A: (A + B) - B. It holds A.
 ///
 /// # Errors
-/// [`MorphologyError::Memory`].
-pub fn closed(
-    a: &Bracket,
-    b: &Bracket,
-    options: &MorphologyOptions,
-) -> Result<Bracket, MorphologyError> {
+/// [`Error`] if memory has no room for the balls.
+pub fn closed(a: &Bracket, b: &Bracket, options: &MorphologyOptions) -> Result<Bracket, Error> {
     let grown = dilated(a, b, options)?;
     let mut closed = difference(&grown, b, options)?;
     closed.inner.extend(a.about(closed.origin).inner);

@@ -1,10 +1,11 @@
 //! Products and quotients over a set of poses (B&I, section 4.3, after Roerdink).
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
 use knotdock_structures::sampling::Ball;
 
+use super::MorphologyOptions;
 use super::complement::{Cube, hausdorff_bound, holding, inside, needed_in};
-use super::{MorphologyError, MorphologyOptions};
 use crate::geometry::bracket::{Bracket, bounds};
 use crate::geometry::obstacle::reduce::reduced;
 
@@ -14,12 +15,8 @@ const MARGIN: f64 = 2.0;
 /// The product over poses, at least one: all points of A in any of them.
 ///
 /// # Errors
-/// [`MorphologyError::Memory`].
-pub fn product(
-    a: &Bracket,
-    poses: &[Pose],
-    options: &MorphologyOptions,
-) -> Result<Bracket, MorphologyError> {
+/// [`Error`] if memory has no room for the balls.
+pub fn product(a: &Bracket, poses: &[Pose], options: &MorphologyOptions) -> Result<Bracket, Error> {
     let balls = a.inner.len().max(a.outer.len()) as u64;
     options.room_for(balls.saturating_mul(poses.len() as u64))?;
     let origin = poses.first().map_or(a.origin, |pose| pose.apply(a.origin));
@@ -40,12 +37,12 @@ pub fn product(
 /// By duality: the complement of the product of the complement of A.
 ///
 /// # Errors
-/// [`MorphologyError::Memory`].
+/// [`Error`] if memory has no room for the balls.
 pub fn quotient(
     a: &Bracket,
     poses: &[Pose],
     options: &MorphologyOptions,
-) -> Result<Bracket, MorphologyError> {
+) -> Result<Bracket, Error> {
     let origin = poses.first().map_or(a.origin, |pose| pose.apply(a.origin));
     let empty = Bracket {
         origin,

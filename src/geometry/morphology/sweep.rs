@@ -10,11 +10,12 @@
 //! direction, so inner balls grow by R.
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::Error;
 use knotdock_structures::sampling::Ball;
 
-use super::{MorphologyError, MorphologyOptions};
+use super::MorphologyOptions;
 use crate::geometry::bracket::{Bracket, shifted, turned};
-use crate::geometry::motion::geodesic::{angle, interpolated};
+use crate::geometry::motion::{angle, interpolated};
 use crate::geometry::obstacle::reduce::reduced;
 
 /// How finely a path is sampled, and how exactly it is followed.
@@ -90,13 +91,13 @@ fn from_frame(ball: &Ball, origin: [f64; 3]) -> f64 {
 /// tolerances leave open.
 ///
 /// # Errors
-/// [`MorphologyError::Memory`].
+/// [`Error`] if memory has no room for the balls.
 pub fn sweep(
     a: &Bracket,
     path: &[Pose],
     sweep: &SweepOptions,
     options: &MorphologyOptions,
-) -> Result<Bracket, MorphologyError> {
+) -> Result<Bracket, Error> {
     let balls = a.inner.len().max(a.outer.len()) as u64;
     options.room_for(balls.saturating_mul(sample_count(a, path, sweep)))?;
     let samples = samples(path, reach(a), sweep.step);

@@ -220,7 +220,7 @@ fn a_ball_on_a_line_sweeps_a_capsule_and_on_a_circle_a_ring() {
 /// A tolerated translation moves in every direction, a tolerated rotation moves far points farther.
 #[test]
 fn tolerances_hold_every_pose_of_the_geodesic_ball() {
-    use crate::geometry::motion::tolerance::geodesic_ball;
+    use crate::geometry::motion::geodesic_ball;
     let solid = Bracket::exact(vec![Ball {
         center: [3.0, 0.0, 0.0],
         radius: 0.5,
@@ -249,10 +249,14 @@ fn too_many_balls_are_refused_before_they_are_made() {
         ..OPTIONS
     };
     let solid = cube([0.0; 3], 1.0);
-    assert!(matches!(
-        dilated(&solid, &solid, &options),
-        Err(MorphologyError::Memory { balls: 262_144, .. })
-    ));
+    let error = dilated(&solid, &solid, &options).unwrap_err();
+    assert!(error.message().contains("262144 balls"), "{error}");
+    assert!(
+        error
+            .remedy()
+            .is_some_and(|remedy| remedy.contains("--memory 5")),
+        "{error:?}"
+    );
     let poses = vec![Pose::identity(); 1000];
     assert!(product(&solid, &poses, &options).is_err());
 }

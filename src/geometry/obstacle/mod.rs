@@ -6,11 +6,10 @@
 //!
 //! Inner with inner balls lie inside the true sum, outer with outer ones hold it, and the Hausdorff bounds add.
 //!
-//! - [`pairs`]: the n1 n2 balls, one after another, none stored.
+//! - [`pair_sums`]: the n1 n2 balls, one after another, none stored.
 //! - [`reduce`]: the same union by fewer balls.
 //! - [`regions`]: connected regions of what is left free.
 
-pub mod pairs;
 pub mod reduce;
 pub mod regions;
 
@@ -18,7 +17,6 @@ use knotdock_scoring::se3::Pose;
 use knotdock_structures::sampling::Ball;
 
 use super::bracket::{Bracket, turned};
-use pairs::PairSums;
 
 /// -R B: the balls turned by the rotation of a pose and reflected in the origin.
 pub fn reflected(balls: &[Ball], rotation: &Pose) -> Vec<Ball> {
@@ -41,13 +39,33 @@ pub fn mirrored(solid: &Bracket, rotation: &Pose) -> Bracket {
     mirrored
 }
 
+/// The n1 n2 balls (a + b, r + s + offset) of two sets, those of the first ball of the first set before all others;
+/// balls without a radius above zero are left out.
+///
+/// B&I, eq. 41 and 44: the offset takes another slice of the lifted sum.
+pub fn pair_sums<'a>(
+    first: &'a [Ball],
+    second: &'a [Ball],
+    offset: f64,
+) -> impl Iterator<Item = Ball> + use<'a> {
+    first.iter().flat_map(move |a| {
+        second.iter().filter_map(move |b| {
+            let radius = a.radius + b.radius + offset;
+            (radius > 0.0).then(|| Ball {
+                center: [0, 1, 2].map(|axis| a.center[axis] + b.center[axis]),
+                radius,
+            })
+        })
+    })
+}
+
 /// A + B, reduced, with `offset` added to each radius.
 pub fn sum(first: &Bracket, second: &Bracket, offset: f64) -> Bracket {
-    let inner = reduce::reduced_sum(&PairSums::new(&first.inner, &second.inner, offset));
+    let inner = reduce::reduced_sum(&first.inner, &second.inner, offset);
     // Unions of balls are known exactly: one set is enough.
     let outer = match first.is_exact() && second.is_exact() {
         true => inner.clone(),
-        false => reduce::reduced_sum(&PairSums::new(&first.outer, &second.outer, offset)),
+        false => reduce::reduced_sum(&first.outer, &second.outer, offset),
     };
     Bracket {
         origin: [0, 1, 2].map(|axis| first.origin[axis] + second.origin[axis]),

@@ -12,61 +12,13 @@ use knotdock_structures::sampling::Ball;
 use knotdock_structures::sampling::ball_tree::BallTree;
 use rayon::prelude::*;
 
-use super::pairs::PairSums;
+use super::pair_sums;
 
 /// Balls of a block.
 const BLOCK: usize = 1 << 16;
 
 /// Most bytes that a ball takes while it is reduced: itself three times, its share of the tree, its mark.
 pub const BYTES_REDUCED: u64 = 200;
-
-/// Balls of which none holds another one that was pushed.
-#[derive(Debug)]
-pub struct Reduction {
-    kept: Vec<Ball>,
-    tree: BallTree,
-    waiting: Vec<Ball>,
-}
-
-impl Default for Reduction {
-    fn default() -> Self {
-        Self {
-            kept: Vec::new(),
-            tree: BallTree::new(&[]),
-            waiting: Vec::new(),
-        }
-    }
-}
-
-impl Reduction {
-    /// Adds balls; about 2^16 at a time are best.
-    pub fn push(&mut self, block: &[Ball]) {
-        let tree = &self.tree;
-        let fresh: Vec<Ball> = block
-            .par_iter()
-            .copied()
-            .filter(|ball| !tree.holds(ball))
-            .collect();
-        self.waiting.extend(held_by_none(fresh));
-        if self.waiting.len() > BLOCK.max(self.kept.len() / 2) {
-            self.merge();
-        }
-    }
-
-    /// Holds all balls against each other.
-    fn merge(&mut self) {
-        let mut all = std::mem::take(&mut self.kept);
-        all.append(&mut self.waiting);
-        self.kept = held_by_none(all);
-        self.tree = BallTree::new(&self.kept);
-    }
-
-    /// The balls that are left, the larger first, then by centre: the same set for every order of pushing.
-    pub fn finish(mut self) -> Vec<Ball> {
-        self.merge();
-        self.kept
-    }
-}
 
 /// The balls that no other one of them holds, in order and once each.
 fn held_by_none(mut balls: Vec<Ball>) -> Vec<Ball> {
@@ -88,25 +40,41 @@ fn order(a: &Ball, b: &Ball) -> Ordering {
         .then_with(|| by_axis(2))
 }
 
-/// The balls that no other one of them holds, the larger first.
+/// The balls that no other one of them holds, the larger first, then by centre: the same for every order of the balls.
 pub fn reduced(balls: impl IntoIterator<Item = Ball>) -> Vec<Ball> {
-    let mut reduction = Reduction::default();
-    let mut block = Vec::with_capacity(BLOCK);
-    for ball in balls {
-        block.push(ball);
-        if block.len() == BLOCK {
-            reduction.push(&block);
-            block.clear();
-        }
-    }
-    reduction.push(&block);
-    reduction.finish()
+    reduced_by_blocks(balls, BLOCK)
 }
 
-/// The balls of a sum that no other one of them holds, the larger first.
-pub fn reduced_sum(sums: &PairSums) -> Vec<Ball> {
-    let [first, second] = sums.sorted();
-    reduced(PairSums::new(&first, &second, sums.offset()).iter())
+fn reduced_by_blocks(balls: impl IntoIterator<Item = Ball>, size: usize) -> Vec<Ball> {
+    let mut balls = balls.into_iter();
+    let (mut kept, mut tree, mut waiting) = (Vec::new(), BallTree::new(&[]), Vec::new());
+    loop {
+        let block: Vec<Ball> = balls.by_ref().take(size).collect();
+        let is_last = block.len() < size;
+        let fresh: Vec<Ball> = block
+            .into_par_iter()
+            .filter(|ball| !tree.holds(ball))
+            .collect();
+        waiting.extend(held_by_none(fresh));
+        if is_last || waiting.len() > size.max(kept.len() / 2) {
+            kept.append(&mut waiting);
+            kept = held_by_none(kept);
+            if is_last {
+                return kept;
+            }
+            tree = BallTree::new(&kept);
+        }
+    }
+}
+
+/// The balls of the sum of two sets, `offset` added to each radius, that no other one of them holds; the larger first.
+pub fn reduced_sum(first: &[Ball], second: &[Ball], offset: f64) -> Vec<Ball> {
+    let [first, second] = [first, second].map(|balls| {
+        let mut balls = balls.to_vec();
+        balls.sort_by(|a, b| b.radius.total_cmp(&a.radius));
+        balls
+    });
+    reduced(pair_sums(&first, &second, offset))
 }
 
 #[cfg(test)]
@@ -128,9 +96,8 @@ mod tests {
     #[test]
     fn what_is_dropped_lies_in_what_is_kept_and_nothing_else_goes() {
         let (a, b) = (cloud(150), cloud(120));
-        let sums = PairSums::new(&a, &b, 0.0);
-        let all: Vec<Ball> = sums.iter().collect();
-        let kept = reduced_sum(&sums);
+        let all: Vec<Ball> = pair_sums(&a, &b, 0.0).collect();
+        let kept = reduced_sum(&a, &b, 0.0);
         assert!(
             kept.len() < all.len() / 2,
             "{} of {}",
@@ -146,13 +113,8 @@ mod tests {
             assert_eq!(holder, Some(index));
         }
         // The order of the sets and blocks of another size change nothing.
-        assert_eq!(kept.len(), reduced_sum(&PairSums::new(&b, &a, 0.0)).len());
-        let mut small = Reduction::default();
-        for block in all.chunks(777) {
-            small.push(block);
-            small.merge();
-        }
-        assert_eq!(small.finish(), reduced(all));
+        assert_eq!(kept.len(), reduced_sum(&b, &a, 0.0).len());
+        assert_eq!(reduced_by_blocks(all.clone(), 777), reduced(all));
     }
 
     #[test]

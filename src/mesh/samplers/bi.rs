@@ -24,18 +24,7 @@ use knotdock_structures::sampling::grid::DepthField;
 use knotdock_structures::sampling::weights::{self, FittedWeights};
 use knotdock_structures::sampling::{Ball, SampleError};
 
-use super::{BallsToWeigh, PartToSample, Sampler, WeightedBalls, union};
-
-/// The sampler.
-pub(super) static SAMPLER: Sampler = Sampler {
-    name: "bi",
-    makes: "balls are of every size, so the kernel is the product kernel, which counts by volume",
-    alpha: 16.0,
-    resolution: super::lattice::RESOLUTION,
-    skin: Some(SKIN),
-    sample,
-    of_balls: Some(of_balls),
-};
+use super::{BallsToWeigh, PartToSample, WeightedBalls, union};
 
 /// By how much the part is grown before its density is fitted, in offsets.
 pub const CORE: f64 = 0.17;
@@ -44,7 +33,7 @@ pub const SKIN: f64 = 0.5;
 /// Most distinct radii.
 const CLASSES: usize = 24;
 
-fn sample(part: &PartToSample) -> Result<WeightedBalls, SampleError> {
+pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, SampleError> {
     let grid = part.field.grid;
     let (core, skin) = (CORE * part.offset, SKIN * part.offset);
     let found = decompose(part.solid, part.field, &DecompositionOptions::default())?;
@@ -91,7 +80,7 @@ fn sample(part: &PartToSample) -> Result<WeightedBalls, SampleError> {
 }
 
 /// Balls of a file as they are, but for the rounding of radii: their weights are the file's where it has some.
-fn of_balls(part: &BallsToWeigh) -> WeightedBalls {
+pub(in crate::mesh) fn of_balls(part: &BallsToWeigh) -> WeightedBalls {
     let (core, skin) = (CORE * part.offset, SKIN * part.offset);
     let mut balls: Vec<Ball> = part.balls.iter().map(|ball| ball.grown(core)).collect();
     round_radii(&mut balls);

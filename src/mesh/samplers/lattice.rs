@@ -18,27 +18,14 @@ use knotdock_structures::sampling::SampleError;
 use knotdock_structures::sampling::lattice::lattice;
 use knotdock_structures::sampling::weights;
 
-use super::{PartToSample, Sampler, WeightedBalls};
-
-/// The sampler.
-pub(super) static SAMPLER: Sampler = Sampler {
-    name: "lattice",
-    makes: "all balls are of one radius, so the kernel is the cone",
-    alpha: 2.0,
-    resolution: RESOLUTION,
-    skin: None,
-    sample,
-    of_balls: None,
-};
+use super::{PartToSample, RESOLUTION, WeightedBalls};
 
 /// Radius of the balls in offsets: 2.5 Å where the offset is 2.2 Å.
 pub const RADIUS: f64 = 2.5 / 2.2;
-/// Default resolution in offsets: that of molecules.
-pub const RESOLUTION: f64 = 4.5 / 2.2;
 /// Widest cell of the lattice in offsets: half the default resolution.
 const CELL: f64 = 0.5 * RESOLUTION;
 
-fn sample(part: &PartToSample) -> Result<WeightedBalls, SampleError> {
+pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, SampleError> {
     let unit = part.solid.frame().unit;
     let (offset, spacing) = (part.offset * unit, part.field.grid.spacing() * unit);
     let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);

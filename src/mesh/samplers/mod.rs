@@ -1,6 +1,4 @@
 //! Samplers of meshes that dock: how a solid becomes weighted balls, and which kernel correlates these.
-//!
-//! A new sampler is one file with its [`Sampler`] here, and one line in [`SAMPLERS`].
 
 pub mod bi;
 pub mod lattice;
@@ -10,33 +8,58 @@ use std::str::FromStr;
 
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
+use knotdock_structures::sampling::Ball;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::hausdorff::HausdorffMeter;
 use knotdock_structures::sampling::weights::FittedWeights;
-use knotdock_structures::sampling::{Ball, SampleError};
 use serde::{Deserialize, Serialize};
 
-/// All samplers, the default first.
-pub static SAMPLERS: [&Sampler; 2] = [&lattice::SAMPLER, &bi::SAMPLER];
-
 /// A sampler.
-#[derive(Debug)]
-pub struct Sampler {
-    /// Its name in options and records.
-    pub name: &'static str,
-    /// What it makes, as the run says it.
-    pub makes: &'static str,
-    /// Default exponent of the bump function.
-    pub alpha: f64,
-    /// Default resolution, in offsets.
-    pub resolution: f64,
-    /// Depth of the skin, in offsets, where the kernel is the product kernel; `None`: it is B&I's cone.
-    pub skin: Option<f64>,
-    /// Samples a part.
-    pub(super) sample: fn(&PartToSample) -> Result<WeightedBalls, SampleError>,
-    /// Weighs balls of a file; `None`: it cannot dock these.
-    pub(super) of_balls: Option<fn(&BallsToWeigh) -> WeightedBalls>,
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sampler {
+    /// Balls of one radius, which B&I's cone correlates ([`lattice`]).
+    #[default]
+    Lattice,
+    /// The balls of Algorithm 1, which the product kernel correlates ([`bi`]).
+    Bi,
 }
+
+impl Sampler {
+    /// Name in options and records.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Lattice => "lattice",
+            Self::Bi => "bi",
+        }
+    }
+
+    /// Its balls and its kernel, as a run reports them.
+    pub fn makes(self) -> &'static str {
+        match self {
+            Self::Lattice => "all balls are of one radius, so the kernel is the cone",
+            Self::Bi => {
+                "balls are of every size, so the kernel is the product kernel, which counts by volume"
+            }
+        }
+    }
+
+    /// Default exponent of the bump function.
+    pub fn alpha(self) -> f64 {
+        match self {
+            Self::Lattice => 2.0,
+            Self::Bi => 16.0,
+        }
+    }
+
+    /// Depth of the skin, in offsets, if the kernel is the product kernel; `None` for B&I's cone.
+    pub fn skin(self) -> Option<f64> {
+        (self == Self::Bi).then_some(bi::SKIN)
+    }
+}
+
+/// Default resolution in offsets: that of molecules.
+pub const RESOLUTION: f64 = 4.5 / 2.2;
 
 /// Balls of a file about the origin, with what a sampler needs of them. Lengths in the file's unit.
 pub(super) struct BallsToWeigh<'a> {
@@ -95,61 +118,19 @@ pub(super) struct WeightedBalls {
     pub skin_fit: Option<FittedWeights>,
 }
 
-/// The name of a sampler.
-#[derive(Clone, Copy, Debug, Serialize, Deserialize)]
-#[serde(try_from = "String", into = "String")]
-pub struct SamplerName(&'static Sampler);
-
-impl SamplerName {
-    /// The sampler.
-    pub fn sampler(self) -> &'static Sampler {
-        self.0
-    }
-}
-
-impl Default for SamplerName {
-    fn default() -> Self {
-        Self(SAMPLERS[0])
-    }
-}
-
-impl PartialEq for SamplerName {
-    fn eq(&self, other: &Self) -> bool {
-        self.0.name == other.0.name
-    }
-}
-
-impl Eq for SamplerName {}
-
-impl fmt::Display for SamplerName {
+impl fmt::Display for Sampler {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.0.name)
+        f.write_str(self.name())
     }
 }
 
-impl From<SamplerName> for String {
-    fn from(name: SamplerName) -> Self {
-        name.to_string()
-    }
-}
-
-impl TryFrom<String> for SamplerName {
-    type Error = String;
-
-    fn try_from(text: String) -> Result<Self, String> {
-        text.parse()
-    }
-}
-
-impl FromStr for SamplerName {
+impl FromStr for Sampler {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let found = SAMPLERS.into_iter().find(|sampler| sampler.name == text);
-        found.map(Self).ok_or_else(|| {
-            let names: Vec<&str> = SAMPLERS.iter().map(|sampler| sampler.name).collect();
-            format!("there is no such sampler; choose {}", names.join(" or "))
-        })
+        let samplers = [Self::Lattice, Self::Bi];
+        let named = samplers.into_iter().find(|sampler| sampler.name() == text);
+        named.ok_or_else(|| "there is no such sampler; choose lattice or bi".to_owned())
     }
 }
 
@@ -158,19 +139,13 @@ mod tests {
     use super::*;
 
     #[test]
-    fn names_are_unique_and_give_their_samplers() {
-        for (place, sampler) in SAMPLERS.iter().enumerate() {
-            let named: SamplerName = sampler.name.parse().unwrap();
-            assert_eq!(named.to_string(), sampler.name);
-            let others = &SAMPLERS[place + 1..];
-            assert!(others.iter().all(|other| other.name != sampler.name));
-            assert!(sampler.resolution > 0.0 && sampler.alpha > 0.0);
+    fn names_are_those_of_records() {
+        for sampler in [Sampler::Lattice, Sampler::Bi] {
+            assert_eq!(sampler.name().parse(), Ok(sampler));
+            let record = serde_json::to_string(&sampler).unwrap();
+            assert_eq!(record, format!("{:?}", sampler.name()));
         }
-        assert!(
-            "voxels"
-                .parse::<SamplerName>()
-                .unwrap_err()
-                .contains("lattice or bi")
-        );
+        let error = "voxels".parse::<Sampler>().unwrap_err();
+        assert!(error.contains("lattice or bi"));
     }
 }

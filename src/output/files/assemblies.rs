@@ -12,7 +12,7 @@ use std::path::Path;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Mesh;
 
-use crate::geometry::surface::Surface as ComputedSurface;
+use crate::geometry::ball_field::Surface as ComputedSurface;
 use crate::output::files::complexes::file_name;
 use crate::output::files::disk;
 use crate::output::files::whole_file::write_new;

@@ -1,12 +1,15 @@
 //! `knotdock sample`: a mesh as balls.
 
-mod files;
 mod sample_report;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use crate::arguments::machine::Threads;
+use crate::arguments::output_file::check_outputs;
+use crate::solid_files::balls::{EXPORTS, ExportBalls, write_table};
+use crate::solid_files::sample_picture::write_picture;
+use crate::solid_files::{check_picture, format_of, place_all};
 use clap::{Args, ValueEnum};
 use knotdock::options::SampleGrid;
 use knotdock::options::values::{ABOVE_ZERO, AT_LEAST_ONE, Range, in_range};
@@ -23,7 +26,7 @@ use knotdock_structures::sphere_tree::SphereTree;
 use serde_json::json;
 
 use crate::messages::console::Console;
-use knotdock_structures::Error;
+use knotdock_structures::{Error, Knots};
 use sample_report::{SampleReport, weights_text};
 
 /// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
@@ -202,6 +205,38 @@ impl Sample {
         object["weights"] = json!(finished.fitted);
         console.result(&object)?;
         Ok(())
+    }
+
+    /// Checks, before any work, that the files to write are not there and can be made; how balls are exported.
+    fn check_files(&self, console: Console) -> Result<Option<ExportBalls>, Error> {
+        let mut files = vec![&self.output];
+        files.extend([&self.picture, &self.export].into_iter().flatten());
+        check_outputs(&files, &[self.mesh.as_path()], self.force, console)?;
+        if let Some(path) = &self.picture {
+            check_picture(path)?;
+        }
+        let export = self.export.as_ref();
+        export
+            .map(|path| format_of("export", path, &EXPORTS))
+            .transpose()
+    }
+
+    /// Writes the files and returns their names.
+    fn write(
+        &self,
+        solid: &Solid,
+        knots: &Knots,
+        balls: &[Ball],
+        export: Option<ExportBalls>,
+    ) -> Result<Vec<String>, Error> {
+        let mut staged = vec![(write_table(knots, &self.output)?, &self.output)];
+        if let (Some(path), Some(export)) = (&self.export, export) {
+            staged.push((export(knots, path)?, path));
+        }
+        if let Some(path) = &self.picture {
+            staged.push((write_picture(solid, balls, path)?, path));
+        }
+        place_all(staged)
     }
 
     /// Warns of what is wrong with the mesh, or refuses it.

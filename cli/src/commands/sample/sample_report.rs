@@ -104,7 +104,7 @@ impl<'a> SampleReport<'a> {
         ];
         for (set, fit) in self.sampling.sets.iter().zip(self.fits) {
             lines.push(vec![
-                set_name(set.name).to_owned(),
+                json!(set.name).as_str().unwrap_or_default().to_owned(),
                 set.balls.len().to_string(),
                 Figure(fit.hausdorff_inward * self.unit).to_string(),
                 self.inward_bound(fit),
@@ -225,18 +225,6 @@ impl<'a> SampleReport<'a> {
             "volume_outside": self.measured(fit.volume_outside),
             "nodes_missed": fit.nodes_missed,
         })
-    }
-}
-
-/// A set's name, as `--set` and `--method` have it.
-fn set_name(name: SetName) -> &'static str {
-    match name {
-        SetName::A1 => "a1",
-        SetName::A2 => "a2",
-        SetName::A3 => "a3",
-        SetName::Wz => "wz",
-        SetName::Octree => "octree",
-        SetName::Voxels => "voxels",
     }
 }
 
