@@ -9,10 +9,11 @@
 
 mod example;
 
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, Turn};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
 use knotdock_scoring::grid_turn::GridTurn;
-use knotdock_scoring::peaks::find_peaks;
+use knotdock_scoring::peaks::PeakLimits;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::so3::rotation_set;
 use std::error::Error;
@@ -38,7 +39,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?.fitted(&receptor)?);
     let images = GridTurn::of(plan.modes()).len();
-    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::new(
+        &plan,
+        &receptor,
+        &ligand,
+        Quantity::Score,
+        Precision::Single,
+    );
     let turns: Vec<Turn> = rotation_set(images * TURNS)
         .into_iter()
         .step_by(images)
@@ -59,7 +66,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         let card = GpuEngine::new(&gpu, &engine, PEAKS.0, PEAKS.1, 512 << 20)?;
         let search = |rounds: usize| -> Result<(), Box<dyn Error>> {
             for _ in 0..rounds {
-                card.best(&turns, |_| {})?;
+                card.best(&turns, &mut |_| {})?;
             }
             Ok(())
         };
@@ -69,10 +76,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut found = Vec::new();
             for turn in &turns[..TURNS / 9] {
                 engine.transform_ligand(&turn.rotation, &mut work);
-                engine.correlate_each(engine.turns(), &mut work, |_, work| {
-                    let values = (&mut work.grid[..], &mut work.row_best[..]);
-                    let wanted = (PEAKS.0, f64::NEG_INFINITY);
-                    find_peaks(plan.size(), values, 0, wanted, &mut found);
+                engine.correlate_each(engine.turns(), &mut work, &mut |_, scores| {
+                    let limits = PeakLimits {
+                        count: PEAKS.0,
+                        floor: f64::NEG_INFINITY,
+                    };
+                    scores.find_peaks(0, limits, &mut found);
                 });
                 found.clear();
             }

@@ -12,6 +12,7 @@
 mod example;
 mod stream;
 
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::quantity::Quantity;
@@ -38,7 +39,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?.fitted(&receptor)?);
-    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::new(
+        &plan,
+        &receptor,
+        &ligand,
+        Quantity::Score,
+        Precision::Single,
+    );
     let memory = stream::bandwidth();
     println!(
         "memory streams {:.2} GB/s (triad of three arrays of {} MiB, one thread; last cache {})",

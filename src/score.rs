@@ -3,6 +3,7 @@
 use crate::dock::outcome::error_scale;
 use crate::dock::scene::Scene;
 use crate::error::SearchError;
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -201,7 +202,7 @@ fn correlations(
     plan: &Plan,
     receptor: &Knots,
     ligand: &Knots,
-) -> Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> {
+) -> Vec<(ReceptorSpectra, TruncatedCorrelation)> {
     let quantities = [
         Quantity::Score,
         Quantity::SliceByOffset(0),
@@ -212,7 +213,7 @@ fn correlations(
     quantities
         .into_par_iter()
         .map(|quantity| {
-            let spectra = ReceptorSpectra::<f64>::new(plan, receptor, ligand, quantity);
+            let spectra = ReceptorSpectra::new(plan, receptor, ligand, quantity, Precision::Double);
             let correlation = TruncatedCorrelation::new(plan, &spectra, ligand, &all);
             (spectra, correlation)
         })
@@ -245,7 +246,7 @@ fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Arc<Plan>, SearchError>
 /// What the rows of a ladder of modes are computed from.
 struct Ladder<'a> {
     plan: &'a Plan,
-    spectra: &'a ReceptorSpectra<f64>,
+    spectra: &'a ReceptorSpectra,
     ligand: &'a Knots,
     /// Magnitudes of all modes at the pose's rotation.
     magnitudes: &'a [f64],
@@ -308,11 +309,11 @@ fn rungs(total: usize, requested: Option<usize>) -> Vec<usize> {
 }
 
 /// Largest score of the grid at the pose's rotation.
-fn scale(plan: &Arc<Plan>, spectra: &ReceptorSpectra<f64>, ligand: &Knots, pose: &Pose) -> f64 {
+fn scale(plan: &Arc<Plan>, spectra: &ReceptorSpectra, ligand: &Knots, pose: &Pose) -> f64 {
     let engine = CpuEngine::new(Arc::clone(plan), spectra, ligand, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&pose.rotation, &mut work);
-    error_scale(work.grid.iter().copied(), plan.options().tolerance)
+    error_scale(work.scores.iter(), plan.options().tolerance)
 }
 
 /// Derivatives of score and slices by rho, by central differences of the exact sum.

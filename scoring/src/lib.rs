@@ -56,6 +56,7 @@ pub mod lifted_axis;
 pub mod overlap;
 pub mod peaks;
 pub mod potential_grid;
+mod precision;
 pub mod quantity;
 mod rigid_move;
 pub mod se3;
@@ -72,3 +73,4 @@ pub mod vectorized;
 pub use correlator::{Correlation, Correlator, CorrelatorError, GridPose};
 /// The engine's options, under the name that the front door gives them.
 pub use engine::EngineOptions as Options;
+pub use precision::Precision;

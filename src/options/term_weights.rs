@@ -4,8 +4,8 @@ use std::fmt;
 use std::sync::LazyLock;
 
 use clap::{Arg, ArgMatches, Args, Command, FromArgMatches};
+use knotdock_scoring::terms::Weight;
 use knotdock_scoring::terms::pose::TermDefinition;
-use knotdock_scoring::terms::weight::Weight;
 use knotdock_scoring::terms::weights;
 use serde::de::{Error, MapAccess, Visitor};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};

@@ -6,8 +6,8 @@
 //! are drawn.
 
 use crate::scene::{Numbers, Pair, engine_options, some_rotation};
+use knotdock_scoring::Precision;
 use knotdock_scoring::quantity::Quantity;
-use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_scoring::transform::real_fft_3d::RealFft3d;
 use knotdock_structures::Knots;
@@ -45,7 +45,8 @@ fn errors<T: Real>(a: &Knots, b: &Knots, tolerance: f64) -> Errors {
     let rotation = some_rotation();
     let mut grid: Vec<f64> = pair
         .correlate(&rotation)
-        .grid
+        .scores
+        .to_vec()
         .iter()
         .map(|value| value.wide())
         .collect();
@@ -236,9 +237,17 @@ fn proteins_meet_the_tolerance_mode_by_mode_and_pose_by_pose() {
         );
     };
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
-        check("f64", tolerance, errors::<f64>(&a, &b, tolerance));
+        check(
+            "f64",
+            tolerance,
+            errors(Precision::Double, &a, &b, tolerance),
+        );
     }
     for tolerance in [1e-2, 1e-3, 1e-4] {
-        check("f32", tolerance, errors::<f32>(&a, &b, tolerance));
+        check(
+            "f32",
+            tolerance,
+            errors(Precision::Single, &a, &b, tolerance),
+        );
     }
 }

@@ -7,7 +7,8 @@
 //! The count is of loads and stores, wherever they end. A processor whose caches hold some results moves fewer bytes
 //! to and from its memory.
 
-use super::cpu::{CpuEngine, TOGETHER};
+use super::cpu::{CpuEngine, TOGETHER, Transforms};
+use crate::precision::{Precision, of_precision};
 use crate::transform::Real;
 
 /// Sizes of the results of all stages.
@@ -30,8 +31,8 @@ pub(super) struct StageSizes {
 }
 
 impl StageSizes {
-    pub fn new<T: Real>(engine: &CpuEngine<T>) -> Self {
-        let modes = engine.plan().modes();
+    pub fn new<T: Real>(engine: &Transforms<T>) -> Self {
+        let modes = engine.plan.modes();
         Self {
             grid: modes.size,
             block: engine.forward.block(),
@@ -39,7 +40,7 @@ impl StageSizes {
             depth: modes.planes.len(),
             columns: modes.columns.len(),
             modes: modes.count,
-            images: engine.turns().len(),
+            images: engine.readings.len(),
         }
     }
 
@@ -82,12 +83,16 @@ impl StageSizes {
     }
 }
 
-impl<T: Real> CpuEngine<T> {
+impl CpuEngine {
     /// Bytes that a rotation reads and writes at the least where as many images go through together as can: each
     /// stage's result written once and read once, and the receptor's spectra read.
     pub fn least_traffic(&self) -> u64 {
-        let sizes = StageSizes::new(self);
-        sizes.least_traffic(size_of::<T>(), sizes.images.min(TOGETHER))
+        let sizes = of_precision!(&self.0, transforms => StageSizes::new(transforms));
+        let real = match self.precision() {
+            Precision::Single => size_of::<f32>(),
+            Precision::Double => size_of::<f64>(),
+        };
+        sizes.least_traffic(real, sizes.images.min(TOGETHER))
     }
 }
 

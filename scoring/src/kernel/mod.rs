@@ -3,7 +3,6 @@
 
 pub mod cone;
 pub mod exponent;
-pub mod low_pass;
 mod options;
 pub mod product;
 pub mod product_sum;
@@ -19,4 +18,5 @@ pub use knotdock_structures::numeric::{Bump, bump};
 pub use options::{KernelError, KernelOptions};
 pub use product::{Band, ProductKernel};
 pub use product_sum::ProductScorer;
+pub use radial_filter::smooth_step_down;
 pub use ranking::RankingKernel;

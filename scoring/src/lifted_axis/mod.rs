@@ -15,7 +15,6 @@
 //! pi i eta_k r0).
 
 mod basis;
-mod nodes;
 #[cfg(test)]
 mod tests;
 

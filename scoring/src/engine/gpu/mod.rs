@@ -14,8 +14,9 @@ mod stages;
 
 pub use device::{ADAPTER_VARIABLE, GpuDevice, GpuError};
 
-use super::cpu::CpuEngine;
+use super::cpu::{CpuEngine, Transforms};
 use crate::grid_turn::GridTurn;
+use crate::precision::of_precision;
 use crate::transform::Real;
 use buffers::{Batch, Buffers, Sizes};
 use nalgebra::UnitQuaternion;
@@ -77,9 +78,19 @@ impl GpuEngine {
     ///
     /// # Errors
     /// [`GpuError`] where the grid does not fit the card or the driver fails.
-    pub fn new<T: Real>(
+    pub fn new(
         gpu: &GpuDevice,
-        engine: &CpuEngine<T>,
+        engine: &CpuEngine,
+        peaks: usize,
+        reach: usize,
+        memory: u64,
+    ) -> Result<Self, GpuError> {
+        of_precision!(&engine.0, transforms => Self::of(gpu, transforms, peaks, reach, memory))
+    }
+
+    fn of<T: Real>(
+        gpu: &GpuDevice,
+        engine: &Transforms<T>,
         peaks: usize,
         reach: usize,
         memory: u64,
@@ -96,7 +107,7 @@ impl GpuEngine {
             stages,
             scale: engine.forward.cells_per_length(),
             center: engine.forward.center(),
-            frame: engine.plan().frame(),
+            frame: engine.plan.frame(),
         })
     }
 
@@ -121,7 +132,7 @@ impl GpuEngine {
     pub fn best(
         &self,
         turns: &[Turn],
-        mut done: impl FnMut(usize),
+        done: &mut dyn FnMut(usize),
     ) -> Result<Vec<GridPeak>, GpuError> {
         let all: Vec<Image> = turns
             .iter()

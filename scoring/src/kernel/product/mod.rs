@@ -36,9 +36,9 @@ mod tests;
 pub use knotdock_structures::ball_union::lens_volume;
 pub use pairs::peak_score_and_reach;
 
-use super::low_pass::smooth_step_down;
 use super::options::{KernelError, KernelOptions};
 use super::radial_transform::RadialTransform;
+use super::smooth_step_down;
 use super::table::Table;
 use crate::quantity::Quantity;
 use knotdock_structures::numeric::Bump;

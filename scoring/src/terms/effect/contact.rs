@@ -6,10 +6,10 @@
 //! name its sources. The radial function k is 1 up to 5 Å and falls to 0 at 7 Å with all derivatives continuous.
 
 use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
-use crate::kernel::low_pass::smooth_step_down;
-pub use crate::terms::potential_table::PotentialError;
-use crate::terms::potential_table::{built_in, end, table_lines};
-use crate::terms::weight::Weight;
+use crate::kernel::smooth_step_down;
+pub use crate::terms::PotentialError;
+use crate::terms::Weight;
+use crate::terms::{built_in, end, table_lines};
 use knotdock_structures::Knots;
 use serde::{Deserialize, Serialize};
 

@@ -7,11 +7,11 @@
 //! because a correlation can count nothing else. One buried residue with many contacts then earns as much as several
 //! should. So this term counts residues.
 
-use super::side::Side;
+use super::bodies::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::blocks::Near;
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.

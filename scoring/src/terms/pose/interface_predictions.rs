@@ -14,11 +14,11 @@
 //! predictor sees are those that the contact potentials see. So the default weight is one that does no harm with a real
 //! predictor (docs/guides/known_residues.md, "Predictions").
 
-use super::side::Side;
+use super::bodies::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::blocks::Near;
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.

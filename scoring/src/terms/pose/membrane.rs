@@ -5,7 +5,7 @@
 
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {

@@ -2,11 +2,11 @@
 //!
 //! These residues are flexible. Their positions in a file are one sample of many, so contacts with them say little.
 
-use super::side::Side;
+use super::bodies::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::blocks::Near;
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.

@@ -5,12 +5,12 @@
 //! nothing in favour of a pose. For that reason unresolved residues are no part of shape, where their skins would
 //! earn.
 
-use super::side::Side;
+use super::bodies::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
 use crate::blocks::Near;
 use crate::rigid_move::center;
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::{Conformers, Knots};
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,4 +1,4 @@
-//! The uniform-grid baseline: rasterise the bumps of both bodies, transform, multiply, transform back.
+//! The uniform-grid baseline of tests and benches: rasterise the bumps of both bodies, transform, multiply, transform back.
 //!
 //! This is Kavraki's, Lysenko's and ZDock's way, which B&I compare with in their Fig. 8. Each body's function is
 //! sampled on a grid of spacing h, one real array per body: the double skin's factor i only changes the product's sign.
@@ -8,8 +8,8 @@
 //!
 //! # What it computes
 //!
-//! The *product* kernel ([`crate::kernel::product`]), not the lifted one, and so is compared with
-//! [`super::Plan::product`] and [`crate::kernel::ProductScorer`] alone. Its only error is the sampling's: the sum over
+//! The *product* kernel (`kernel::product`), not the lifted one, and so is compared with
+//! `Plan::product` and `ProductScorer` alone. Its only error is the sampling's: the sum over
 //! voxels stands for the integral of F_A(x) F_B(x - t), and errs by the aliases of both spectra at multiples of 1 / h.
 //! For smooth bumps that falls faster than any power of h, for sharp balls (alpha = infinity) like a power (the tests
 //! measure both).
@@ -24,20 +24,19 @@
 //! receptor's: [`UniformGrid::position`]. The box holds both bodies and twice the kernel's reach per axis, so that no
 //! ligand scores with the receptor and its image both. Scores are in Å^3.
 
-use super::plan::{PlanError, check_bodies};
-use crate::kernel::product::{Body, factors, peak_score_and_reach};
-use crate::kernel::{Band, KernelOptions, ProductKernel};
-use crate::quantity::Quantity;
-use crate::rigid_move::center;
-use crate::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
-use crate::transform::{Real, fast_size};
+use knotdock_scoring::engine::PlanError;
+use knotdock_scoring::exact::center;
+use knotdock_scoring::kernel::product::{Body, factors, peak_score_and_reach};
+use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel};
+use knotdock_scoring::quantity::Quantity;
+use knotdock_scoring::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
+use knotdock_scoring::transform::{Real, fast_size};
 use knotdock_structures::Knots;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use num_complex::Complex;
-use serde::{Deserialize, Serialize};
 
 /// Options of the baseline.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformGridOptions {
     /// Double skin, bump exponent and low-pass (the trim has no meaning here).
     pub kernel: KernelOptions,
@@ -75,7 +74,8 @@ impl UniformGridPlan {
         ligand: &Knots,
         options: UniformGridOptions,
     ) -> Result<Self, PlanError> {
-        check_bodies(receptor, ligand)?;
+        receptor.check()?;
+        ligand.check()?;
         let spacing = options.spacing;
         for (name, value) in [("spacing", spacing), ("tolerance", options.tolerance)] {
             if !(value.is_finite() && value > 0.0) {
@@ -320,10 +320,7 @@ fn rasterise<T: Real>(
                 let near = dx * dx + dy * dy;
                 let half = (reach * reach - near).max(0.0).sqrt();
                 let row = (wrap(ix, nx) * ny + wrap(iy, ny)) * nz;
-                let Some(row) = grid.get_mut(row..row + nz) else {
-                    debug_assert!(false, "a row beyond the grid");
-                    continue;
-                };
+                let row = &mut grid[row..row + nz];
                 let range = run(z, half);
                 let mut place = wrap(*range.start(), nz);
                 for iz in range {
