@@ -348,7 +348,7 @@ mod tests {
                 tolerance,
                 ..EngineOptions::default()
             };
-            let mut correlator = Correlator::new(&a, &b, options).unwrap();
+            let mut correlator = Correlator::new(&a, &b, &options).unwrap();
             assert!(correlator.rank_error() <= tolerance / 3.0);
             let scorer = correlator.exact_scorer();
             let potentials = correlator.potential_grid();
@@ -375,17 +375,17 @@ mod tests {
             tolerance,
             ..EngineOptions::default()
         };
-        let single = Correlator::new(&a, &b, with(1e-5)).err();
+        let single = Correlator::new(&a, &b, &with(1e-5)).err();
         assert!(matches!(single, Some(CorrelatorError::Precision { .. })));
-        assert!(Correlator::<f64>::with_terms(&a, &b, with(1e-5), Vec::new()).is_ok());
+        assert!(Correlator::with_terms(&a, &b, &with(1e-5), Precision::Double, Vec::new()).is_ok());
         let mut bad = b.clone();
         bad.radii[0] = f64::NAN;
-        let plan = Correlator::new(&a, &bad, with(1e-2)).err();
+        let plan = Correlator::new(&a, &bad, &with(1e-2)).err();
         assert!(matches!(
             plan,
             Some(CorrelatorError::Plan(PlanError::Knots(_)))
         ));
-        let mut correlator = Correlator::new(&a, &b, with(1e-2)).unwrap();
+        let mut correlator = Correlator::new(&a, &b, &with(1e-2)).unwrap();
         for norm in [f64::NAN, 0.0, 2.0] {
             let rotation =
                 UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(norm, 0.0, 0.0, 0.0));

@@ -30,7 +30,9 @@ impl Pair {
         let mut largest = 0.0f64;
         for radius in RADII {
             let one = Knots::new(vec![[0.0; 3]], vec![radius]).unwrap();
-            let plan = Plan::with_kernel_of(a, &one, engine_options(tolerance), tolerance).unwrap();
+            let plan =
+                Plan::with_effects(a, &one, engine_options(tolerance), tolerance, Vec::new())
+                    .unwrap();
             let spectra = ReceptorSpectra::new(&plan, a, &one, Quantity::Score, Precision::Double);
             let grid = PotentialGrid::new(&plan, &spectra, &one);
             for x in &a.centers {

@@ -23,6 +23,7 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 #[path = "scene/uniform_grid.rs"]
+#[allow(dead_code, reason = "the bench uses the rest")]
 mod baseline;
 use baseline::{UniformGrid, UniformGridOptions, UniformGridPlan};
 

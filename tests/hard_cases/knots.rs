@@ -42,7 +42,7 @@ fn coincident_knots_are_one_knot_many_times() {
         crowd.correlate(&some_rotation()).scores.to_vec(),
     );
     assert_eq!(single.plan.size(), crowd.plan.size());
-    let best = a.iter().copied().fold(0.0, f32::max);
+    let best = a.iter().copied().fold(0.0, f64::max);
     for (voxel, (one, all)) in a.iter().zip(&b).enumerate() {
         // Sums of 21,000 equal terms in f32.
         assert!(
@@ -105,7 +105,7 @@ fn one_knot_against_a_hundred_thousand() {
         let pair = Pair::new(Precision::Single, a, b, engine_options(1e-2));
         let (error, best) = pair.error(some_rotation(), 499, 100);
         let grid = pair.correlate(&some_rotation()).scores.to_vec();
-        let largest = f64::from(grid.iter().fold(0.0f32, |a, b| a.max(b.abs())));
+        let largest = grid.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         println!("error {error:.2e}, best {best:.2e}, largest {largest:.2e}");
         assert!(error <= 1e-2 * best, "{error:e} of {best:e}");
     }
@@ -345,7 +345,7 @@ fn weights_scale_the_score_or_are_refused() {
         (-1.0, 0.25),
     ] {
         let scaled = grid(x, y);
-        let factor = (x * y) as f32;
+        let factor = x * y;
         assert!(
             plain.iter().zip(&scaled).all(|(a, b)| a * factor == *b),
             "{x:e} {y:e}"

@@ -31,7 +31,7 @@ fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
     let rank = rank.unwrap_or(spectra.full_rank());
     let engine = CpuEngine::new(pair.plan.clone(), &spectra, b, rank);
     let mut work = engine.workspace();
-    let mut fast: Vec<(f32, usize, usize)> = Vec::new();
+    let mut fast: Vec<(f64, usize, usize)> = Vec::new();
     let rotations: Vec<_> = (0..4)
         .map(|k| Pose::from_parts([0.2 * f64::from(k), 0.5, -0.3, 0.7], [0.0; 3]).rotation)
         .collect();
@@ -39,10 +39,9 @@ fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
         engine.correlate(rotation, &mut work);
         fast.extend(
             work.scores
-                .to_vec()
                 .iter()
                 .enumerate()
-                .map(|(voxel, &score)| (score, turn, voxel)),
+                .map(|(voxel, score)| (score, turn, voxel)),
         );
     }
     fast.sort_by(|x, y| y.0.total_cmp(&x.0));
@@ -55,9 +54,9 @@ fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
     let (best, last) = (exact[0].0, exact[99].0);
     let error = exact[..100]
         .iter()
-        .map(|&(score, place)| (score - f64::from(fast[place].0)).abs() / best)
+        .map(|&(score, place)| (score - fast[place].0).abs() / best)
         .fold(0.0, f64::max);
-    assert!(last - f64::from(fast[1500].0) > 3.0 * error * best);
+    assert!(last - fast[1500].0 > 3.0 * error * best);
     let gone = exact[..100].iter().filter(|(_, place)| *place >= 100);
     Losses {
         error,
@@ -115,10 +114,10 @@ fn single_precision_is_far_below_the_tolerance() {
         let best = double.scores.iter().fold(0.0, f64::max);
         let largest = double.scores.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let off = single
-            .grid
+            .scores
             .iter()
-            .zip(&double.grid)
-            .map(|(x, y)| (f64::from(*x) - y).abs())
+            .zip(double.scores.iter())
+            .map(|(x, y)| (x - y).abs())
             .fold(0.0, f64::max);
         println!(
             "{tolerance:e}: {:.1e} of the largest, {:.1e} of the best",
@@ -148,7 +147,7 @@ fn peaks_of_a_symmetric_receptor_are_tied() {
     let best = work.scores.iter().fold(0.0, f64::max);
     let (mut peaks, mut worst) = (0, 0.0f64);
     for (voxel, score) in work.scores.iter().enumerate() {
-        if f64::from(score) < 0.4 * best {
+        if score < 0.4 * best {
             continue;
         }
         peaks += 1;

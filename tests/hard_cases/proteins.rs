@@ -40,16 +40,10 @@ struct Errors {
     pose: f64,
 }
 
-fn errors<T: Real>(a: &Knots, b: &Knots, tolerance: f64) -> Errors {
-    let pair = Pair::<T>::new(a, b, engine_options(tolerance));
+fn errors(precision: Precision, a: &Knots, b: &Knots, tolerance: f64) -> Errors {
+    let pair = Pair::new(precision, a, b, engine_options(tolerance));
     let rotation = some_rotation();
-    let mut grid: Vec<f64> = pair
-        .correlate(&rotation)
-        .scores
-        .to_vec()
-        .iter()
-        .map(|value| value.wide())
-        .collect();
+    let mut grid = pair.correlate(&rotation).scores.to_vec();
     let (pose, best) = worst_pose(&pair, &grid, rotation);
 
     let plan = &pair.plan;
@@ -87,7 +81,7 @@ fn errors<T: Real>(a: &Knots, b: &Knots, tolerance: f64) -> Errors {
 
 /// Largest error over the hundred best voxels and a hundred spread over all ranks, as a share of the best exact
 /// score, and that score.
-fn worst_pose<T: Real>(pair: &Pair<T>, grid: &[f64], rotation: UnitQuaternion<f64>) -> (f64, f64) {
+fn worst_pose(pair: &Pair, grid: &[f64], rotation: UnitQuaternion<f64>) -> (f64, f64) {
     let mut order: Vec<usize> = (0..grid.len()).collect();
     order.sort_by(|&x, &y| grid[y].total_cmp(&grid[x]));
     let sweep = order.iter().step_by(order.len() / (POSES / 2));
@@ -113,7 +107,7 @@ struct Wave {
 }
 
 /// Modes drawn evenly from all that the plan keeps.
-fn drawn_modes<T: Real>(pair: &Pair<T>) -> Vec<[Wave; 3]> {
+fn drawn_modes(pair: &Pair) -> Vec<[Wave; 3]> {
     let modes = pair.plan.modes();
     let mut all = Vec::with_capacity(modes.count);
     modes.for_each(|_, w, _| all.push(w));
@@ -132,8 +126,8 @@ fn drawn_modes<T: Real>(pair: &Pair<T>) -> Vec<[Wave; 3]> {
 ///
 /// Knots of one radius have the same phase along eta, so their sum over x is taken once. At some modes that is
 /// compared with the plain 4D sum.
-fn direct<T: Real>(
-    pair: &Pair<T>,
+fn direct(
+    pair: &Pair,
     a: &Knots,
     b: &Knots,
     rotation: UnitQuaternion<f64>,

@@ -49,7 +49,7 @@ fn worst(pair: &Pair, rotation: UnitQuaternion<f64>) -> (f64, f64) {
         .collect();
     let (most, best) = (0..work.scores.count())
         .map(|voxel| (work.scores.score(voxel), voxel))
-        .fold((f32::NEG_INFINITY, 0), |a, b| if b.0 > a.0 { b } else { a });
+        .fold((f64::NEG_INFINITY, 0), |a, b| if b.0 > a.0 { b } else { a });
     assert!(most > 0.0);
     let best = pair.exact(rotation, best);
     let share = |face: bool| {
@@ -111,13 +111,13 @@ fn the_field_ends_with_the_box() {
     let rotation = UnitQuaternion::identity();
     let work = pair.correlate(&rotation);
     let (best, score) = work
-        .grid
+        .scores
         .iter()
         .enumerate()
-        .fold((0, 0.0f32), |a, b| if *b.1 > a.1 { (b.0, *b.1) } else { a });
+        .fold((0, 0.0f64), |a, b| if b.1 > a.1 { b } else { a });
     let pose = pair.pose(rotation, best);
     let here = field.gradient(&pose).0;
-    assert!((here - f64::from(score)).abs() < 1e-2 * here);
+    assert!((here - score).abs() < 1e-2 * here);
     for axis in 0..3 {
         for boxes in [-2.0, -1.0, 1.0, 2.0] {
             let mut step = Vector3::zeros();

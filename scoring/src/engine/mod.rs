@@ -2,14 +2,14 @@
 //! with the feature `gpu` a graphics processor.
 
 mod columns;
-pub mod cpu;
+pub(crate) mod cpu;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 mod memory;
 mod packed;
-pub mod plan;
+mod plan;
 mod rank;
-pub mod receptor_spectra;
+pub(crate) mod receptor_spectra;
 mod traffic;
 
 pub use cpu::{CpuEngine, Workspace};

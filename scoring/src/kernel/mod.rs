@@ -1,19 +1,19 @@
 //! Kernels: the bump function, its transform, the lifted cone, the low-passed kernel that ranks poses, and the product
 //! kernel of rasterised bumps.
 
-pub mod cone;
+mod cone;
 pub mod exponent;
 mod options;
 pub mod product;
-pub mod product_sum;
-pub mod radial_filter;
+mod product_sum;
+pub(crate) mod radial_filter;
 pub mod radial_transform;
-pub mod ranking;
+mod ranking;
 #[cfg(test)]
 mod reference;
 pub mod table;
 
-pub use cone::{Cone, Trim};
+pub use cone::Trim;
 pub use knotdock_structures::numeric::{Bump, bump};
 pub use options::{KernelError, KernelOptions};
 pub use product::{Band, ProductKernel};

@@ -82,11 +82,6 @@ impl<'a> Accumulator<'a> {
         leaf.iter().map(|b| u64::from(self.add(a, b))).sum()
     }
 
-    /// Adds ball `b` of body B, moved to its pose, with every ball of a leaf of body A; how many of them it meets.
-    pub fn add_to_leaf(&mut self, leaf: &[WeightedBall], b: &WeightedBall) -> u64 {
-        leaf.iter().map(|a| u64::from(self.add(a, b))).sum()
-    }
-
     /// The sum so far.
     pub fn sum(&mut self) -> Overlap {
         self.flush();

@@ -27,7 +27,7 @@
 use knotdock_scoring::engine::PlanError;
 use knotdock_scoring::exact::center;
 use knotdock_scoring::kernel::product::{Body, factors, peak_score_and_reach};
-use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel};
+use knotdock_scoring::kernel::{Band, Bump, KernelError, KernelOptions, ProductKernel};
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
 use knotdock_scoring::transform::{Real, fast_size};
@@ -56,6 +56,7 @@ pub struct UniformGridPlan {
     pub options: UniformGridOptions,
     /// The kernel that the grid samples.
     pub kernel: ProductKernel,
+    bump: Bump,
     /// Grid points per axis.
     pub size: [usize; 3],
     /// Middle of the receptor's bounding box, Å.
@@ -120,6 +121,7 @@ impl UniformGridPlan {
         Ok(Self {
             options,
             kernel,
+            bump: Bump::new(options.kernel.alpha).map_err(KernelError::from)?,
             size,
             receptor_center,
             ligand_center,
@@ -186,11 +188,6 @@ impl<T: Real> UniformGrid<T> {
             fft,
             plan,
         }
-    }
-
-    /// The plan.
-    pub fn plan(&self) -> &UniformGridPlan {
-        &self.plan
     }
 
     /// Buffers for one rotation at a time.
@@ -301,6 +298,7 @@ fn rasterise<T: Real>(
     grid: &mut [T],
 ) {
     let h = plan.options.spacing;
+    let bump = plan.bump;
     let [nx, ny, nz] = plan.size;
     grid.fill(T::zero());
     let wrap = |index: i64, n: usize| index.rem_euclid(n as i64) as usize;
@@ -311,7 +309,12 @@ fn rasterise<T: Real>(
     };
     for ball in balls {
         let [x, y, z] = ball.position.into();
-        let reach = plan.kernel.density_reach(body, ball.radius);
+        let grown = ball.radius + plan.options.kernel.offset;
+        let reach = if body == Body::Solid {
+            ball.radius
+        } else {
+            grown
+        };
         for ix in run(x, reach) {
             let dx = ix as f64 * h - x;
             let left = reach * reach - dx * dx;
@@ -326,7 +329,14 @@ fn rasterise<T: Real>(
                 for iz in range {
                     let dz = iz as f64 * h - z;
                     let distance = (near + dz * dz).sqrt();
-                    let value = plan.kernel.density(body, ball.radius, distance);
+                    let solid = bump.value(distance / ball.radius);
+                    let value = match body {
+                        Body::Solid => solid,
+                        Body::Grown => bump.value(distance / grown),
+                        Body::DoubleSkin => {
+                            bump.value(distance / grown) - plan.options.kernel.lambda * solid
+                        }
+                    };
                     row[place] += T::of(ball.weight * value);
                     place += 1;
                     if place == nz {

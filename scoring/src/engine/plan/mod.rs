@@ -221,8 +221,8 @@ impl Plan {
         Self::with_effects(receptor, ligand, options, options.tolerance, Vec::new())
     }
 
-    /// Plans the correlation of shape and further terms, with the kernel of a tolerance as [`Plan::with_kernel_of`]
-    /// does.
+    /// Plans the correlation of shape and further terms with the kernel of another tolerance, whose window is part of its
+    /// definition: values compare with those of a coarser run of that tolerance.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -234,20 +234,6 @@ impl Plan {
         terms: Vec<Term>,
     ) -> Result<Self, PlanError> {
         Self::build(receptor, ligand, options, kernel_tolerance, None, terms)
-    }
-
-    /// Plans a correlation whose kernel is that of another tolerance, so that its values compare with those of a
-    /// coarser run: the kernel's window is part of its definition.
-    ///
-    /// # Errors
-    /// As [`Plan::new`].
-    pub fn with_kernel_of(
-        receptor: &Knots,
-        ligand: &Knots,
-        options: EngineOptions,
-        kernel_tolerance: f64,
-    ) -> Result<Self, PlanError> {
-        Self::with_effects(receptor, ligand, options, kernel_tolerance, Vec::new())
     }
 
     /// Plans the correlation of two sets of knots by the product kernel (`options.kernel.trim` has no meaning there).

@@ -204,29 +204,8 @@ impl ProductKernel {
         }
     }
 
-    /// A body's function of one ball of radius r at distance d from its centre, as a rasteriser writes it.
-    #[inline(always)]
-    pub fn density(&self, body: Body, radius: f64, distance: f64) -> f64 {
-        let grown = radius + self.options.offset;
-        match body {
-            Body::Solid => self.bump.value(distance / radius),
-            Body::Grown => self.bump.value(distance / grown),
-            Body::DoubleSkin => {
-                self.bump.value(distance / grown)
-                    - self.options.lambda * self.bump.value(distance / radius)
-            }
-        }
-    }
-
-    /// Radius in Å beyond which [`Self::density`] is 0.
-    pub fn density_reach(&self, body: Body, radius: f64) -> f64 {
-        match body {
-            Body::Solid => radius,
-            Body::Grown | Body::DoubleSkin => radius + self.options.offset,
-        }
-    }
-
-    /// Transform of [`Self::density`] at frequency w, in the unit of volumes; the low-pass is not in it.
+    /// Transform of a body's function of one ball of radius r at frequency w, in the unit of volumes; the low-pass is not
+    /// in it.
     pub fn spectrum(&self, body: Body, radius: f64, w: f64) -> f64 {
         let ball = |radius: f64| {
             let q = radius * w;

@@ -1,7 +1,7 @@
 //! Pose term `atom_pair`: a potential over pairs of atoms by kind and distance.
 
 use super::bodies::Bodies;
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
 use crate::terms::{PotentialError, Weight, built_in, table_lines};
 use knotdock_structures::Knots;
@@ -27,7 +27,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let potential = inputs.atom_pair_potential.cloned().unwrap_or_default();
-        Box::new(AtomPairs::new(receptor, ligand, &potential, weight))
+        let term = AtomPairs::new(receptor, ligand, &potential, weight);
+        Box::new(move |pose, _| term.score(pose))
     },
 };
 
@@ -36,7 +37,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 /// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`. E_ab joins the table's energies by straight
 /// lines. It is constant below the first distance and falls to 0 over one step after the last. Atoms without a kind
 /// do not count.
-pub struct AtomPairs {
+pub(super) struct AtomPairs {
     bodies: Bodies,
     energies: EnergyTable,
     weight: f64,
@@ -72,12 +73,6 @@ impl AtomPairs {
             |a, b, distance| self.energies.at(a, b, distance).0,
         );
         -self.weight * sum
-    }
-}
-
-impl PoseTerm for AtomPairs {
-    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
-        self.score(pose)
     }
 }
 

@@ -162,6 +162,48 @@ impl Side {
     }
 }
 
+/// Both sides of a docking, for finding the atoms of each that are in contact.
+pub(super) struct Sides {
+    receptor: Side,
+    ligand: Side,
+}
+
+impl Sides {
+    pub fn new(receptor: &Knots, ligand: &Knots) -> Self {
+        Self {
+            receptor: Side::new(receptor),
+            ligand: Side::new(ligand),
+        }
+    }
+
+    /// Sum at a pose over the groups of atoms of receptor and ligand that are in contact with the other side, of a value
+    /// of each. The positions of a group's atoms are those of its own file (Å).
+    pub fn sum_in_contact<G>(
+        &self,
+        [of_receptor, of_ligand]: [&[G]; 2],
+        pose: &Pose,
+        atoms: impl Fn(&G) -> &[[f64; 3]],
+        value: impl Fn(&G) -> f64,
+    ) -> f64 {
+        let mut near = Near::default();
+        let mut sum = |side: &Side, groups: &[G], pose: &Pose| {
+            let mut touches = |atom: &[f64; 3]| side.touches(pose, *atom, &mut near);
+            let touching = groups
+                .iter()
+                .filter(|group| atoms(group).iter().any(&mut touches));
+            touching.fold(0.0, |sum, group| sum + value(group))
+        };
+        let inverse = pose.inverse();
+        sum(&self.ligand, of_receptor, &inverse) + sum(&self.receptor, of_ligand, pose)
+    }
+}
+
+/// Positions of some knots (Å); indices beyond them are left out.
+pub(super) fn positions(knots: &Knots, indices: &[usize]) -> Vec<[f64; 3]> {
+    let centers = indices.iter().filter_map(|&index| knots.centers.get(index));
+    centers.copied().collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

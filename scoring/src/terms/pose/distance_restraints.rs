@@ -7,7 +7,7 @@
 //! The penalty grows in proportion to the violation. A pose of the search may be 2 to 4 Å from the nearest sampled
 //! one, so that a penalty by squares would refuse poses for the coarseness of the search.
 
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
 use crate::terms::Weight;
 use knotdock_structures::Knots;
@@ -28,11 +28,12 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     count: |inputs| [inputs.distance_restraints.list.len(); 2],
     applies: |inputs| !inputs.distance_restraints.list.is_empty(),
     build: |inputs, weight| {
-        Box::new(RestraintPenalty {
+        let term = RestraintPenalty {
             restraints: inputs.distance_restraints.clone(),
             positions: inputs.bodies.map(|knots: &Knots| knots.centers.clone()),
             weight,
-        })
+        };
+        Box::new(move |pose, workspace| term.score(pose, &mut workspace.violations))
     },
 };
 
@@ -78,10 +79,9 @@ struct RestraintPenalty {
     weight: f64,
 }
 
-impl PoseTerm for RestraintPenalty {
-    fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64 {
+impl RestraintPenalty {
+    fn score(&self, pose: &Pose, violations: &mut Vec<f64>) -> f64 {
         let [receptor, ligand] = &self.positions;
-        let violations = &mut workspace.violations;
         violations.clear();
         violations.extend(self.restraints.list.iter().map(|restraint| {
             restraint.violation(restraint.effective_distance(receptor, ligand, pose))
@@ -161,7 +161,7 @@ mod tests {
         };
         let at = |needed: usize, x: f64| {
             let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
-            term(needed).score(&pose, &mut Workspace::default())
+            term(needed).score(&pose, &mut Vec::new())
         };
         // At 0, 10 and 20 Å: 2 Å too near, 5 and 15 Å too far.
         for (needed, violation) in [(1, 2.0), (2, 7.0), (3, 22.0)] {

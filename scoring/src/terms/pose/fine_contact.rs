@@ -1,7 +1,7 @@
 //! Pose term `fine_contact`: a contact potential in three ranges of distance.
 
 use super::bodies::Bodies;
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
 use crate::terms::effect::contact::{Potential, TYPES, header};
 use crate::terms::{PotentialError, Weight, built_in, end, table_lines};
@@ -30,7 +30,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let potential = inputs.fine_contact_potential.cloned().unwrap_or_default();
-        Box::new(FineContacts::new(receptor, ligand, &potential, weight))
+        let term = FineContacts::new(receptor, ligand, &potential, weight);
+        Box::new(move |pose, _| term.score(pose))
     },
 };
 
@@ -41,7 +42,7 @@ const REACH: f64 = ENDS[2][1];
 ///
 /// Two atoms of types a and c at distance d score `-weight sum_b E_b[a][c] (s_b(d) - s_{b-1}(d))` over the ranges b.
 /// s_b is the step that ends range b, and s_{-1} = 0. Atoms without a type do not count.
-pub struct FineContacts {
+struct FineContacts {
     bodies: Bodies,
     /// Factor of each step s_b, -weight (E_b - E_{b+1}): `[receptor type][ligand type][range]`.
     steps: Vec<[[f64; 3]; TYPES.len()]>,
@@ -87,12 +88,6 @@ impl FineContacts {
                     + third * step_down(distance, ENDS[2])
             },
         )
-    }
-}
-
-impl PoseTerm for FineContacts {
-    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
-        self.score(pose)
     }
 }
 

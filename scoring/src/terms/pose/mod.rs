@@ -21,7 +21,7 @@
 //!
 //! # Adding a term
 //!
-//! Write a file with a type that implements [`PoseTerm`] and a constant [`TermDefinition`], and add the constant to
+//! Write a file with a constant [`TermDefinition`], and add the constant to
 //! [`POSE_TERMS`]. Its weight option, its column in `poses.csv`, its JSON keys and its place in every report follow
 //! from the registry.
 
@@ -64,12 +64,9 @@ pub const POSE_TERMS: &[TermDefinition] = &[
 /// Time to score a pose by all terms but `relaxed`, as a share of the time by all terms. Measured on the example pair.
 const UNRELAXED: f64 = 0.25;
 
-/// A pose term prepared for two bodies.
-pub trait PoseTerm: Send + Sync {
-    /// Weighted value at a pose of the ligand; higher is better. Calls with one workspace allocate nothing once it
-    /// has grown.
-    fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64;
-}
+/// A pose term prepared for two bodies: its weighted value at a pose of the ligand; higher is better. Calls with one
+/// workspace allocate nothing once it has grown.
+pub type PoseTerm = Box<dyn Fn(&Pose, &mut Workspace) -> f64 + Send + Sync>;
 
 /// Definition of a pose term: its name, what it reads, and how it is prepared.
 #[derive(Debug)]
@@ -91,7 +88,7 @@ pub struct TermDefinition {
     /// Whether the inputs hold what it reads.
     pub applies: fn(&TermInputs) -> bool,
     /// Prepares it with a weight; called only if it applies.
-    pub build: fn(&TermInputs, f64) -> Box<dyn PoseTerm>,
+    pub build: fn(&TermInputs, f64) -> PoseTerm,
 }
 
 impl TermDefinition {
@@ -152,7 +149,7 @@ impl TermInputs<'_> {
 /// The pose terms that act between two bodies, prepared for scoring poses.
 pub struct Rescorer {
     /// Each with its place in [`POSE_TERMS`].
-    terms: Vec<(usize, Box<dyn PoseTerm>)>,
+    terms: Vec<(usize, PoseTerm)>,
 }
 
 impl Rescorer {
@@ -174,7 +171,7 @@ impl Rescorer {
     pub fn score(&self, pose: &Pose, workspace: &mut Workspace) -> TermValues {
         let mut values = TermValues::default();
         for (index, term) in &self.terms {
-            values.set(*index, term.score(pose, workspace));
+            values.set(*index, term(pose, workspace));
         }
         values
     }

@@ -6,7 +6,7 @@
 //! earn.
 
 use super::bodies::Side;
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use super::{TermDefinition, UNRELAXED};
 use crate::blocks::Near;
 use crate::rigid_move::center;
 use crate::se3::Pose;
@@ -33,7 +33,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let segments = inputs.unresolved;
-        Box::new(UnresolvedClashes::new(receptor, ligand, segments, weight))
+        let term = UnresolvedClashes::new(receptor, ligand, segments, weight);
+        Box::new(move |pose, _| term.score(pose))
     },
 };
 
@@ -44,7 +45,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 const REACH: f64 = 5.0;
 
 /// Two bodies prepared for charging clashes with unresolved segments.
-pub struct UnresolvedClashes {
+struct UnresolvedClashes {
     /// Segments of receptor and ligand.
     segments: [Vec<Occupancy>; 2],
     receptor: Body,
@@ -103,12 +104,6 @@ impl UnresolvedClashes {
             + clashes(&self.receptor, ligand, &inverse, pose);
         // Without clashes the score is 0, not -0.
         0.0 - self.weight * clashes
-    }
-}
-
-impl PoseTerm for UnresolvedClashes {
-    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
-        self.score(pose)
     }
 }
 

@@ -102,11 +102,6 @@ impl<T: Real> Forward<T> {
         [0, 1, 2].map(|axis| self.fine[axis] as f64 / self.modes.lengths[axis])
     }
 
-    /// Width of the spreading window in cells.
-    pub fn width(&self) -> usize {
-        self.kernel.width()
-    }
-
     /// Fine grid points of the block that knots are spread onto, on each axis.
     pub(crate) fn block(&self) -> [usize; 3] {
         self.block

@@ -14,8 +14,8 @@ mod tests;
 
 pub use self::list::Workspace;
 use self::list::{Atoms, Interface, Site};
+use super::TermDefinition;
 use super::atom_pair::{AtomPairPotential, EnergyTable, SMOOTH_REACH};
-use super::{PoseTerm, TermDefinition};
 use crate::blocks::Blocks;
 use crate::rigid_move::{Derivatives, Move, center};
 use crate::se3::Pose;
@@ -43,7 +43,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let potential = inputs.atom_pair_potential.cloned().unwrap_or_default();
-        Box::new(Relaxation::new(receptor, ligand, &potential, weight))
+        let term = Relaxation::new(receptor, ligand, &potential, weight);
+        Box::new(move |pose, workspace| term.score(pose, workspace))
     },
 };
 
@@ -69,7 +70,7 @@ const HYDROGEN: f64 = 1.15;
 /// E_ab is the atom pair potential as [`super::AtomPairs`] reads it; atoms without a kind only repel. The pose
 /// descends by less than 2 Å on a smooth energy of a quarter of that stiffness, to E(end). Its score is
 /// `-weight min(E(start), E(end))`.
-pub struct Relaxation {
+pub(super) struct Relaxation {
     atoms: Atoms,
     energies: EnergyTable,
     weight: f64,
@@ -77,17 +78,11 @@ pub struct Relaxation {
 
 /// A relaxed pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Relaxed {
+pub(super) struct Relaxed {
     /// The pose after the descent, or the original one if that is no worse.
     pub pose: Pose,
     /// Its energy in RT; lower is better.
     pub energy: f64,
-}
-
-impl PoseTerm for Relaxation {
-    fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64 {
-        self.score(pose, workspace)
-    }
 }
 
 impl Relaxation {
