@@ -1,11 +1,10 @@
 //! Time of a rotation of the example pair on a graphics processor beside one thread of the CPU, in the same run,
 //! peaks included.
 //!
-//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name and the
-//! bandwidth of its memory when it copies. For two ranks of the lifted axis, that of shape alone and about that of all
-//! effects of proteins, it prints the milliseconds of a rotation on either device, their ratio, the bytes that a rotation
-//! moves at the least as a share of that bandwidth, and the stages on the card, each submitted by itself. Except on an
-//! adapter that is software, it also times 54,000 rotations: the same 3,600 fifteen times.
+//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name. For
+//! two ranks of the lifted axis, that of shape alone and about that of all effects of proteins, it prints the milliseconds
+//! of a rotation on either device, their ratio, and the stages on the card, each submitted by itself. Except on an adapter
+//! that is software, it also times 54,000 rotations: the same 3,600 fifteen times.
 
 mod example;
 
@@ -54,13 +53,7 @@ fn main() -> Result<(), Box<dyn Error>> {
             wanted: std::array::from_fn(|image| image < images),
         })
         .collect();
-    let bandwidth = gpu.copy_bandwidth()?;
-    println!(
-        "{} ({}): its memory copies at {:.1} GB/s, reading and writing",
-        gpu.name(),
-        gpu.backend(),
-        1e-9 * bandwidth
-    );
+    println!("{} ({})", gpu.name(), gpu.backend());
     for rank in [2, 7] {
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, rank);
         let card = GpuEngine::new(&gpu, &engine, PEAKS.0, PEAKS.1, 512 << 20)?;
@@ -96,13 +89,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             card.in_flight(),
             images * TURNS,
             core_ms / card_ms
-        );
-        let traffic = card.least_traffic() as f64;
-        println!(
-            "  a rotation moves {:.2} MB at the least: {:.1} GB/s, {:.0}% of the copies",
-            1e-6 * traffic,
-            1e-6 * traffic / card_ms,
-            1e5 * traffic / card_ms / bandwidth
         );
         if !gpu.is_software() {
             let fine = least_seconds(1, || search(FINE_ROTATIONS / (images * TURNS)))?;

@@ -5,7 +5,6 @@
 use crate::scene;
 use crate::scene::{Pair, RADII, askew_cloud, cloud, engine_options as options};
 use knotdock_scoring::Precision;
-use knotdock_scoring::affinity::DoubleSkin;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -327,24 +326,21 @@ fn complex_affinity_functions_multiply_to_the_score() {
     engine.correlate(&rotation, &mut work);
 
     let kernel = plan.kernel().options();
-    let skin = DoubleSkin {
-        lambda: kernel.lambda,
-        offset: kernel.offset,
-    };
-    let (receptor, ligand) = (skin.knots(&a), skin.knots(&b));
+    let affinity = |solid| scene::AffinityKnots::of(solid, kernel.lambda, kernel.offset);
+    let (receptor, ligand) = (affinity(&a), affinity(&b));
     let about = |x: &[f64; 3], center: Vector3<f64>| Vector3::from(*x) - center;
     let x: Vec<[f64; 3]> = receptor
-        .centers()
+        .centers
         .iter()
         .map(|x| about(x, plan.receptor_center()).into())
         .collect();
     let y: Vec<[f64; 3]> = ligand
-        .centers()
+        .centers
         .iter()
         .map(|y| (rotation * about(y, plan.ligand_center())).into())
         .collect();
-    let mirrored: Vec<f64> = ligand.radii().iter().map(|s| -s).collect();
-    let conjugated: Vec<Complex64> = ligand.weights().iter().map(|d| d.conj()).collect();
+    let mirrored: Vec<f64> = ligand.radii.iter().map(|s| -s).collect();
+    let conjugated: Vec<Complex64> = ligand.weights.iter().map(|d| d.conj()).collect();
     let modes = plan.axis().modes() as i64;
     let spectrum_with = |weights: &[Complex64]| {
         let mut spectrum = Vec::new();
@@ -354,7 +350,7 @@ fn complex_affinity_functions_multiply_to_the_score() {
             for k in -modes..=modes {
                 let eta = plan.axis().eta(k);
                 sum += plan.axis().coefficient(plan.kernel(), length, k)
-                    * ndft_4d(&x, receptor.radii(), receptor.weights(), w, eta)
+                    * ndft_4d(&x, &receptor.radii, &receptor.weights, w, eta)
                     * ndft_4d(&y, &mirrored, weights, w, eta).conj();
             }
             spectrum.push((w, sum * multiplicity / plan.modes().volume()));
@@ -362,7 +358,7 @@ fn complex_affinity_functions_multiply_to_the_score() {
         spectrum
     };
     // The conjugate of the whole transform conjugates the weights once more.
-    let (product, as_printed) = (spectrum_with(&conjugated), spectrum_with(ligand.weights()));
+    let (product, as_printed) = (spectrum_with(&conjugated), spectrum_with(&ligand.weights));
     let best = work.scores.iter().fold(0.0, f64::max);
     for voxel in (0..work.scores.count()).step_by(work.scores.count() / 40) {
         let t = engine.position(voxel);

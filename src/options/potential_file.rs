@@ -3,8 +3,9 @@
 use std::path::{Path, PathBuf};
 
 use crate::bounded_read::{MAX_TABLE, read_bounded_text};
-use knotdock_scoring::terms::effect::contact::{Potential, PotentialError};
+use knotdock_scoring::terms::effect::contact::Potential;
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
+use knotdock_structures::Error;
 
 /// Why the potential that an option names cannot be used.
 #[derive(Clone, Debug, thiserror::Error)]
@@ -43,7 +44,7 @@ pub(super) fn atom_pair(path: &str) -> Result<AtomPairPotential, PotentialFileEr
 fn read<P>(
     path: &str,
     script: &str,
-    parse: fn(&str) -> Result<P, PotentialError>,
+    parse: fn(&str) -> Result<P, Error>,
 ) -> Result<P, PotentialFileError> {
     let wrong = |line, message| PotentialFileError {
         path: Path::new(path).to_owned(),
@@ -57,5 +58,5 @@ fn read<P>(
             format!("the table of energies cannot be read: {error}"),
         )
     })?;
-    parse(&text).map_err(|error| wrong(Some(error.line as u64), error.to_string()))
+    parse(&text).map_err(|error| wrong(error.line(), error.to_string()))
 }

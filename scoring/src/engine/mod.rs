@@ -10,7 +10,6 @@ mod packed;
 mod plan;
 mod rank;
 pub(crate) mod receptor_spectra;
-mod traffic;
 
 pub use cpu::{CpuEngine, Workspace};
 pub use memory::EngineMemory;

@@ -11,6 +11,7 @@ pub mod effect;
 pub mod pose;
 
 use effect::Effect;
+use knotdock_structures::Error;
 use pose::POSE_TERMS;
 
 /// The weights of all terms by their ids: those of effects, then those of pose terms, each in the order of the registry.
@@ -36,23 +37,14 @@ pub struct Weight {
     pub default: f64,
 }
 
-/// Error of a table that is no potential.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{message}")]
-pub struct PotentialError {
-    /// 1-based line.
-    pub line: usize,
-    /// What is wrong with it.
-    pub message: String,
-}
-
 /// The potential of a built-in table.
 ///
 /// # Panics
 /// If the table does not parse. Tests parse every built-in table, so a program with such a table is never released.
-pub(crate) fn built_in<P>(file: &str, parsed: Result<P, PotentialError>) -> P {
-    parsed.unwrap_or_else(|PotentialError { line, message }| {
-        unreachable!("the built-in table {file} is damaged on line {line}: {message}")
+pub(crate) fn built_in<P>(file: &str, parsed: Result<P, Error>) -> P {
+    parsed.unwrap_or_else(|error| {
+        let line = error.line();
+        unreachable!("the built-in table {file} is damaged on line {line:?}: {error}")
     })
 }
 
@@ -64,15 +56,17 @@ pub(crate) fn table_lines(text: &str) -> impl Iterator<Item = (usize, &str)> {
 }
 
 /// Refuses lines after the last row of a table.
-pub(crate) fn end<'a>(
-    lines: &mut impl Iterator<Item = (usize, &'a str)>,
-) -> Result<(), PotentialError> {
+pub(crate) fn end<'a>(lines: &mut impl Iterator<Item = (usize, &'a str)>) -> Result<(), Error> {
     lines.next().map_or(Ok(()), |(line, _)| {
-        Err(PotentialError {
-            line,
-            message: "the table has ended before this line".to_owned(),
-        })
+        Err(wrong(line, "the table has ended before this line"))
     })
+}
+
+/// Error of a table with a fault on a 1-based line.
+pub(crate) fn wrong(line: usize, message: impl std::fmt::Display) -> Error {
+    let remedy =
+        "give a table as the scripts in scripts/potentials write it, or leave the option out";
+    Error::input(message).on_line(line as u64).help(remedy)
 }
 
 #[cfg(test)]
@@ -103,13 +97,9 @@ mod potential_table_tests {
 
     /// A damaged built-in table once became a potential of zeros: every pose scored, and wrongly.
     #[test]
-    #[should_panic(expected = "the built-in table some.csv is damaged on line 7: no number")]
+    #[should_panic(expected = "the built-in table some.csv is damaged on line Some(7): no number")]
     fn a_damaged_built_in_table_is_no_zero_potential() {
-        let error = PotentialError {
-            line: 7,
-            message: "no number".to_owned(),
-        };
-        built_in::<()>("some.csv", Err(error));
+        built_in::<()>("some.csv", Err(wrong(7, "no number")));
     }
 
     #[test]
@@ -118,6 +108,6 @@ mod potential_table_tests {
         assert_eq!(lines.next(), Some((3, "a,1")));
         assert_eq!(lines.next(), Some((5, "b,2")));
         assert_eq!(end(&mut lines), Ok(()));
-        assert_eq!(end(&mut table_lines("\nc,3")).unwrap_err().line, 2);
+        assert_eq!(end(&mut table_lines("\nc,3")).unwrap_err().line(), Some(2));
     }
 }

@@ -16,7 +16,7 @@ use std::sync::Arc;
 
 #[path = "../../src/test_support.rs"]
 mod test_support;
-pub use test_support::Numbers;
+pub use test_support::{AffinityKnots, Numbers};
 
 /// Radii like those of protein atoms, Å.
 pub const RADII: [f64; 3] = [1.5, 1.7, 1.9];

@@ -3,7 +3,6 @@
 use super::device::{GpuDevice, GpuError};
 use crate::engine::columns::Reading;
 use crate::engine::cpu::Transforms;
-use crate::engine::traffic::StageSizes;
 use crate::transform::Real;
 use crate::transform::modes::place;
 use bytemuck::{Pod, Zeroable};
@@ -82,36 +81,26 @@ impl Sizes {
         self.peaks.min(voxels.div_ceil(of_peak))
     }
 
-    /// Sizes of the stages' results.
-    fn results(&self) -> StageSizes {
-        StageSizes {
-            grid: self.grid,
-            block: self.block,
-            components: self.fields,
-            depth: self.depth,
-            columns: self.columns,
-            modes: self.modes,
-            images: self.images,
-        }
-    }
-
-    /// Bytes of the peaks of an image.
-    fn peak_bytes(&self) -> usize {
-        8 * self.peaks
-    }
-
-    /// Bytes of each buffer that grows with the turns, for one, and of each that grows with the images.
+    /// Bytes of each buffer that grows with the turns, for one, and of each that grows with the images: the block, its
+    /// rows along z, its columns before the transform along x, the ligand's modes; then the product's columns, its
+    /// planes, the scores, the best of each row, the peaks.
     fn bytes(&self) -> ([usize; 4], [usize; 5]) {
-        let results = self.results();
-        let [along, rows, grid, row_best] = results.of_image(REAL);
-        let of_image = [along, rows, grid, row_best, self.peak_bytes()];
-        (results.of_turn(REAL), of_image)
-    }
-
-    /// Bytes that an image reads and writes at the least, its share of a turn's images included: every buffer
-    /// written once and read once, and the receptor's spectra read.
-    pub fn least_traffic(&self) -> u64 {
-        self.results().least_traffic(REAL, 1) + 2 * self.peak_bytes() as u64
+        const COMPLEX: usize = 2 * REAL;
+        let ([nx, ny, nz], [bx, by, bz]) = (self.grid, self.block);
+        let of_turn = [
+            REAL * self.fields * bx * by * bz,
+            COMPLEX * self.fields * bx * self.depth * by,
+            COMPLEX * self.fields * self.columns * bx,
+            COMPLEX * self.fields * self.modes,
+        ];
+        let of_image = [
+            COMPLEX * self.columns * nx,
+            COMPLEX * nx * self.depth * ny,
+            REAL * nx * ny * nz,
+            REAL * nx * ny,
+            8 * self.peaks,
+        ];
+        (of_turn, of_image)
     }
 
     /// The largest batch that takes at most `memory` bytes and fits the adapter's limits.

@@ -116,13 +116,6 @@ impl GpuEngine {
         self.batch.images
     }
 
-    /// Bytes of the card's memory that a rotation reads and writes at the least: each stage's results once, and the
-    /// receptor's spectra. Over the time of a rotation and [`GpuDevice::copy_bandwidth`] it tells how far from its floor
-    /// the card works.
-    pub fn least_traffic(&self) -> u64 {
-        self.sizes.least_traffic()
-    }
-
     /// The best voxels of every wanted image of every turn, in the order of the turns.
     ///
     /// `done` is called with the number of images as they are finished.

@@ -13,7 +13,7 @@
 //!
 //! B&I's affinity function (eq. 51) is F_S = i (f_{S+B0} - lambda f_S) on each body, with f_S = sum_i c_i psi_{r_i}(x -
 //! x_i) and the grown solid the same with radii r_i + r0. Its product with the other body's, i * i = -1 kept as their
-//! text needs it (see [`crate::affinity`]), is for each pair of knots
+//! text needs it, is for each pair of knots
 //!
 //! -lambda^2 (psi_r * psi_s) + lambda [(psi_{r+r0} * psi_s) + (psi_r * psi_{s+r0})] - (psi_{r+r0} * psi_{s+r0}).
 //!

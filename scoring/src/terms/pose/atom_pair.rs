@@ -3,8 +3,8 @@
 use super::bodies::Bodies;
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::{PotentialError, Weight, built_in, table_lines};
-use knotdock_structures::Knots;
+use crate::terms::{Weight, built_in, table_lines, wrong};
+use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
 use std::sync::LazyLock;
@@ -162,9 +162,8 @@ impl AtomPairPotential {
     /// any order.
     ///
     /// # Errors
-    /// [`PotentialError`] with the line that has another form, or with the last line if pairs are missing.
-    pub fn parse(text: &str) -> Result<Self, PotentialError> {
-        let wrong = |line: usize, message: String| PotentialError { line, message };
+    /// [`Error`] with the line that has another form, or with the last line if pairs are missing.
+    pub fn parse(text: &str) -> Result<Self, Error> {
         let mut lines = table_lines(text);
         let distances: Vec<String> = DISTANCES.iter().map(f64::to_string).collect();
         let header = format!("kind,kind,{}", distances.join(","));
@@ -391,11 +390,14 @@ mod atom_pair_potential_tests {
             .iter()
             .position(|line| line.starts_with("ALA_N,"))
             .unwrap();
-        let error = |lines: &[&str]| AtomPairPotential::parse(&lines.join("\n")).unwrap_err();
+        let line_of = |lines: &[&str]| {
+            let error = AtomPairPotential::parse(&lines.join("\n")).unwrap_err();
+            error.line().unwrap() as usize
+        };
         let spoilt = |line: &str| {
             let mut lines = lines.clone();
             lines[first] = line;
-            error(&lines).line
+            line_of(&lines)
         };
         for line in [
             "ALA_N,ALA_N,1,2",
@@ -405,14 +407,14 @@ mod atom_pair_potential_tests {
         ] {
             assert_eq!(spoilt(line), first + 1, "{line}");
         }
-        assert_eq!(error(&lines[first..]).line, 1, "no header");
+        assert_eq!(line_of(&lines[first..]), 1, "no header");
         assert_eq!(
-            error(&lines[..lines.len() - 1]).line,
+            line_of(&lines[..lines.len() - 1]),
             lines.len() - 1,
             "cut short"
         );
         let twice: Vec<&str> = lines.iter().chain(&lines[first..=first]).copied().collect();
-        assert_eq!(error(&twice).line, twice.len());
+        assert_eq!(line_of(&twice), twice.len());
         assert!(AtomPairPotential::try_from(vec![[0.0; DISTANCES.len()]; 3]).is_err());
     }
 

@@ -4,8 +4,8 @@ use super::bodies::Bodies;
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
 use crate::terms::effect::contact::{Potential, TYPES, header};
-use crate::terms::{PotentialError, Weight, built_in, end, table_lines};
-use knotdock_structures::Knots;
+use crate::terms::{Weight, built_in, end, table_lines};
+use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
 
 /// Definition of the term.
@@ -124,9 +124,9 @@ impl DistanceBinnedPotential {
     /// each type.
     ///
     /// # Errors
-    /// [`PotentialError`] with the line that has another form, or if the energies of a range are not finite and
+    /// [`Error`] with the line that has another form, or if the energies of a range are not finite and
     /// symmetric.
-    pub fn parse(text: &str) -> Result<Self, PotentialError> {
+    pub fn parse(text: &str) -> Result<Self, Error> {
         let mut lines = table_lines(text);
         header(&mut lines, "range,")?;
         let mut range = |name: &str| Potential::parse_rows(&mut lines, &format!("{name},"));
@@ -224,12 +224,11 @@ mod distance_binned_potential_tests {
 
     #[test]
     fn tables_that_are_none_are_refused_by_line() {
-        assert_eq!(
-            DistanceBinnedPotential::parse("# x\nrange,type,A\n")
-                .unwrap_err()
-                .line,
-            2
-        );
+        let line_of = |text: &str| {
+            let error = DistanceBinnedPotential::parse(text).unwrap_err();
+            error.line().unwrap() as usize
+        };
+        assert_eq!(line_of("# x\nrange,type,A\n"), 2);
         let first = TABLE
             .lines()
             .position(|line| line.starts_with("far,CA,"))
@@ -238,16 +237,13 @@ mod distance_binned_potential_tests {
         let spoilt = |line: &str| {
             let mut lines = lines.clone();
             lines[first] = line;
-            DistanceBinnedPotential::parse(&lines.join("\n"))
+            line_of(&lines.join("\n"))
         };
-        assert_eq!(spoilt("near,CA,1").unwrap_err().line, first + 1);
-        assert_eq!(spoilt("far,CA,x").unwrap_err().line, first + 1);
+        assert_eq!(spoilt("near,CA,1"), first + 1);
+        assert_eq!(spoilt("far,CA,x"), first + 1);
         assert!(DistanceBinnedPotential::parse(&lines[..first].join("\n")).is_err());
         let longer = format!("{TABLE}far,N,1\n");
-        assert_eq!(
-            DistanceBinnedPotential::parse(&longer).unwrap_err().line,
-            lines.len() + 1
-        );
+        assert_eq!(line_of(&longer), lines.len() + 1);
     }
 
     #[test]

@@ -3,8 +3,8 @@
 use super::super::Real;
 use super::sorted_points::Grid;
 use super::{FIRST_GROUP, Plan, SortedPoints, TransformError};
+use crate::vectorized::vectorized;
 use num_complex::Complex;
-use pulp::{Simd, WithSimd};
 
 impl<T: Real, const D: usize> Plan<T, D> {
     /// Buffers for transforms by this plan; executions allocate nothing.
@@ -34,7 +34,10 @@ impl<T: Real, const D: usize> Plan<T, D> {
         sorted: &mut SortedPoints<D>,
     ) -> Result<(), TransformError> {
         sorted.grid = self.grid;
-        pulp::Arch::new().dispatch(Sort { sorted, points })
+        vectorized(
+            #[inline(always)]
+            || sorted.set(points),
+        )
     }
 
     /// Type 1, points to modes: `output[k] = sum_j weights[j] exp(-2 pi i k.x_j)`.
@@ -50,36 +53,10 @@ impl<T: Real, const D: usize> Plan<T, D> {
         output: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, weights.len(), output.len(), work)?;
-        pulp::Arch::new().dispatch(Forward::<T, Complex<T>, D> {
-            plan: self,
-            points,
-            weights,
-            work,
-            output,
-        });
-        Ok(())
-    }
-
-    /// As [`Self::forward`] for real weights, in less time.
-    ///
-    /// # Errors
-    ///
-    /// As [`Self::forward`].
-    pub fn forward_real(
-        &self,
-        points: &SortedPoints<D>,
-        weights: &[T],
-        work: &mut Workspace<T, D>,
-        output: &mut [Complex<T>],
-    ) -> Result<(), TransformError> {
-        self.check(points, weights.len(), output.len(), work)?;
-        pulp::Arch::new().dispatch(Forward::<T, T, D> {
-            plan: self,
-            points,
-            weights,
-            work,
-            output,
-        });
+        vectorized(
+            #[inline(always)]
+            || self.run_forward(points, weights, work, output),
+        );
         Ok(())
     }
 
@@ -96,13 +73,10 @@ impl<T: Real, const D: usize> Plan<T, D> {
         values: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, values.len(), modes.len(), work)?;
-        pulp::Arch::new().dispatch(Adjoint {
-            plan: self,
-            points,
-            modes,
-            work,
-            values,
-        });
+        vectorized(
+            #[inline(always)]
+            || self.run_adjoint(points, modes, work, values),
+        );
         Ok(())
     }
 
@@ -134,69 +108,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
             }
         }
         Ok(())
-    }
-}
-
-/// Folding and sorting points.
-pub(super) struct Sort<'a, const D: usize> {
-    pub(super) sorted: &'a mut SortedPoints<D>,
-    pub(super) points: &'a [[f64; D]],
-}
-
-impl<const D: usize> WithSimd for Sort<'_, D> {
-    type Output = Result<(), TransformError>;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) -> Self::Output {
-        self.sorted.set(self.points)
-    }
-}
-
-/// Points to modes, with weights of type `W`: real or complex.
-pub(super) struct Forward<'a, T: Real, W, const D: usize> {
-    pub(super) plan: &'a Plan<T, D>,
-    pub(super) points: &'a SortedPoints<D>,
-    pub(super) weights: &'a [W],
-    pub(super) work: &'a mut Workspace<T, D>,
-    pub(super) output: &'a mut [Complex<T>],
-}
-
-impl<T: Real, const D: usize> WithSimd for Forward<'_, T, Complex<T>, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.plan
-            .run_forward::<_, 2>(self.points, self.weights, self.work, self.output);
-    }
-}
-
-impl<T: Real, const D: usize> WithSimd for Forward<'_, T, T, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.plan
-            .run_forward::<_, 1>(self.points, self.weights, self.work, self.output);
-    }
-}
-
-/// Modes to values at the points.
-pub(super) struct Adjoint<'a, T: Real, const D: usize> {
-    pub(super) plan: &'a Plan<T, D>,
-    pub(super) points: &'a SortedPoints<D>,
-    pub(super) modes: &'a [Complex<T>],
-    pub(super) work: &'a mut Workspace<T, D>,
-    pub(super) values: &'a mut [Complex<T>],
-}
-
-impl<T: Real, const D: usize> WithSimd for Adjoint<'_, T, D> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, _: S) {
-        self.plan
-            .run_adjoint(self.points, self.modes, self.work, self.values);
     }
 }
 
