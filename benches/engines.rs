@@ -7,12 +7,13 @@
 //! it. Neither engine's preparation of the receptor, once a run, counts.
 
 mod example;
+#[path = "../scoring/tests/scene/uniform_grid.rs"]
+mod uniform_grid;
 
 use knotdock::options::DockOptions;
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
-use knotdock_scoring::engine::{
-    CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
-};
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, PairKernel, Plan};
 use knotdock_scoring::kernel::{Band, ProductScorer};
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
@@ -22,6 +23,7 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::error::Error;
 use std::sync::Arc;
 use std::time::Instant;
+use uniform_grid::{UniformGrid, UniformGridOptions, UniformGridPlan};
 
 /// Rotations whose errors are measured; each is timed `REPEATS` times.
 const ROTATIONS: usize = 3;
@@ -155,8 +157,13 @@ fn lifted_rows(pair: &Pair, base: EngineOptions, band: Band) -> Result<Vec<Row>,
             Some(scorer) => scorer,
             none => none.insert(ProductScorer::new(kernel, &pair.receptor, &pair.ligand)?),
         };
-        let spectra =
-            ReceptorSpectra::<f32>::new(&plan, &pair.receptor, &pair.ligand, Quantity::Score);
+        let spectra = ReceptorSpectra::new(
+            &plan,
+            &pair.receptor,
+            &pair.ligand,
+            Quantity::Score,
+            Precision::Single,
+        );
         for rank in 1..=spectra.full_rank().min(4) {
             let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &pair.ligand, rank);
             let mut work = engine.workspace();
@@ -167,7 +174,8 @@ fn lifted_rows(pair: &Pair, base: EngineOptions, band: Band) -> Result<Vec<Row>,
                 }
                 let position = |voxel| engine.position(voxel);
                 let centers = (plan.receptor_center(), plan.ligand_center());
-                measured.compare(&work.grid, position, rotation, centers, scorer);
+                let scores: Vec<f32> = work.scores.iter().map(|score| score as f32).collect();
+                measured.compare(&scores, position, rotation, centers, scorer);
             }
             let name = format!(
                 "h = {} Å, {:?}, fine {:?} x {}, rank {rank}",

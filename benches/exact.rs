@@ -6,6 +6,7 @@
 
 mod example;
 
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -32,7 +33,13 @@ fn main() -> Result<(), Box<dyn Error>> {
         plan.kernel().reach(),
         1e3 * prepared.elapsed().as_secs_f64()
     );
-    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::new(
+        &plan,
+        &receptor,
+        &ligand,
+        Quantity::Score,
+        Precision::Single,
+    );
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, 3);
     let mut work = engine.workspace();
     let brute = Brute::new(&plan, &receptor, &ligand);
@@ -40,8 +47,8 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (mut pairs, mut best, mut worst) = (0, f64::MIN_POSITIVE, 0.0f64);
     for rotation in knotdock_scoring::so3::rotation_set(POSES) {
         engine.correlate(&rotation, &mut work);
-        let peak = (0..work.grid.len())
-            .max_by(|&a, &b| work.grid[a].total_cmp(&work.grid[b]))
+        let peak = (0..work.scores.count())
+            .max_by(|&a, &b| work.scores.score(a).total_cmp(&work.scores.score(b)))
             .unwrap_or(0);
         let place = plan.receptor_center() + engine.position(peak);
         let pose = Pose::about(rotation, plan.ligand_center(), place);

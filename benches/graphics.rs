@@ -1,18 +1,18 @@
 //! Time of a rotation of the example pair on a graphics processor beside one thread of the CPU, in the same run,
 //! peaks included.
 //!
-//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name and the
-//! bandwidth of its memory when it copies. For two ranks of the lifted axis, that of shape alone and about that of all
-//! effects of proteins, it prints the milliseconds of a rotation on either device, their ratio, the bytes that a rotation
-//! moves at the least as a share of that bandwidth, and the stages on the card, each submitted by itself. Except on an
-//! adapter that is software, it also times 54,000 rotations: the same 3,600 fifteen times.
+//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name. For
+//! two ranks of the lifted axis, that of shape alone and about that of all effects of proteins, it prints the milliseconds
+//! of a rotation on either device, their ratio, and the stages on the card, each submitted by itself. Except on an adapter
+//! that is software, it also times 54,000 rotations: the same 3,600 fifteen times.
 
 mod example;
 
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, Turn};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
 use knotdock_scoring::grid_turn::GridTurn;
-use knotdock_scoring::peaks::find_peaks;
+use knotdock_scoring::peaks::PeakLimits;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::so3::rotation_set;
 use std::error::Error;
@@ -38,7 +38,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?.fitted(&receptor)?);
     let images = GridTurn::of(plan.modes()).len();
-    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::new(
+        &plan,
+        &receptor,
+        &ligand,
+        Quantity::Score,
+        Precision::Single,
+    );
     let turns: Vec<Turn> = rotation_set(images * TURNS)
         .into_iter()
         .step_by(images)
@@ -47,19 +53,13 @@ fn main() -> Result<(), Box<dyn Error>> {
             wanted: std::array::from_fn(|image| image < images),
         })
         .collect();
-    let bandwidth = gpu.copy_bandwidth()?;
-    println!(
-        "{} ({}): its memory copies at {:.1} GB/s, reading and writing",
-        gpu.name(),
-        gpu.backend(),
-        1e-9 * bandwidth
-    );
+    println!("{} ({})", gpu.name(), gpu.backend());
     for rank in [2, 7] {
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, rank);
         let card = GpuEngine::new(&gpu, &engine, PEAKS.0, PEAKS.1, 512 << 20)?;
         let search = |rounds: usize| -> Result<(), Box<dyn Error>> {
             for _ in 0..rounds {
-                card.best(&turns, |_| {})?;
+                card.best(&turns, &mut |_| {})?;
             }
             Ok(())
         };
@@ -69,10 +69,12 @@ fn main() -> Result<(), Box<dyn Error>> {
             let mut found = Vec::new();
             for turn in &turns[..TURNS / 9] {
                 engine.transform_ligand(&turn.rotation, &mut work);
-                engine.correlate_each(engine.turns(), &mut work, |_, work| {
-                    let values = (&mut work.grid[..], &mut work.row_best[..]);
-                    let wanted = (PEAKS.0, f64::NEG_INFINITY);
-                    find_peaks(plan.size(), values, 0, wanted, &mut found);
+                engine.correlate_each(engine.turns(), &mut work, &mut |_, scores| {
+                    let limits = PeakLimits {
+                        count: PEAKS.0,
+                        floor: f64::NEG_INFINITY,
+                    };
+                    scores.find_peaks(0, limits, &mut found);
                 });
                 found.clear();
             }
@@ -87,13 +89,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             card.in_flight(),
             images * TURNS,
             core_ms / card_ms
-        );
-        let traffic = card.least_traffic() as f64;
-        println!(
-            "  a rotation moves {:.2} MB at the least: {:.1} GB/s, {:.0}% of the copies",
-            1e-6 * traffic,
-            1e-6 * traffic / card_ms,
-            1e5 * traffic / card_ms / bandwidth
         );
         if !gpu.is_software() {
             let fine = least_seconds(1, || search(FINE_ROTATIONS / (images * TURNS)))?;

@@ -4,14 +4,10 @@
 //! over rotations: each stage, the whole rotation, and the stock transforms for comparison. Those are q forward real
 //! transforms of the fine grid and one inverse of the mode grid, unpruned and out of place. They are computed by realfft
 //! and rustfft, with the `transpose` crate between axes.
-//!
-//! It also prints the bytes that a rotation moves at the least ([`CpuEngine::least_traffic`]), the bandwidth of the
-//! memory as one thread sees it ([`stream`]), and the rotation's time over that of these bytes at that bandwidth. Below 1
-//! the caches serve the rotation faster than memory could.
 
 mod example;
-mod stream;
 
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::quantity::Quantity;
@@ -38,16 +34,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     };
     let options = knotdock::options::DockOptions::default().kernel.engine();
     let plan = Arc::new(Plan::new(&receptor, &ligand, options)?.fitted(&receptor)?);
-    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
-    let memory = stream::bandwidth();
-    println!(
-        "memory streams {:.2} GB/s (triad of three arrays of {} MiB, one thread; last cache {})",
-        1e-9 * memory.bytes_per_second,
-        memory.array >> 20,
-        match memory.cache {
-            Some(bytes) => format!("{} MiB", bytes >> 20),
-            None => "unknown".to_owned(),
-        }
+    let spectra = ReceptorSpectra::new(
+        &plan,
+        &receptor,
+        &ligand,
+        Quantity::Score,
+        Precision::Single,
     );
     for rank in RANKS {
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, rank);
@@ -91,14 +83,6 @@ fn main() -> Result<(), Box<dyn Error>> {
             1e3 * bare,
             whole / bare,
             (whole - spread / images) / bare
-        );
-        let bytes = engine.least_traffic() as f64;
-        let streamed = bytes / memory.bytes_per_second;
-        println!(
-            "  a rotation moves {:.2} MB at the least, {:.3} ms of that stream; ratio {:.2}",
-            1e-6 * bytes,
-            1e3 * streamed,
-            whole / streamed
         );
     }
     Ok(())

@@ -8,6 +8,7 @@
 
 mod example;
 
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::quantity::Quantity;
@@ -23,7 +24,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     let mut options = knotdock::options::DockOptions::default().kernel.engine();
     options.tolerance = 1e-4;
     let plan = Plan::new(&receptor, &ligand, options)?;
-    let spectra = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::new(
+        &plan,
+        &receptor,
+        &ligand,
+        Quantity::Score,
+        Precision::Double,
+    );
     println!(
         "{} receptor and {} ligand knots, {} modes in all; medians",
         receptor.len(),

@@ -4,6 +4,7 @@ use crate::dock::outcome::error_scale;
 use crate::dock::scene::Scene;
 use crate::error::{COARSER, no_pose};
 use crate::memory_size::in_words;
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -203,7 +204,7 @@ fn correlations(
     plan: &Plan,
     receptor: &Knots,
     ligand: &Knots,
-) -> Vec<(ReceptorSpectra<f64>, TruncatedCorrelation)> {
+) -> Vec<(ReceptorSpectra, TruncatedCorrelation)> {
     let quantities = [
         Quantity::Score,
         Quantity::SliceByOffset(0),
@@ -214,7 +215,7 @@ fn correlations(
     quantities
         .into_par_iter()
         .map(|quantity| {
-            let spectra = ReceptorSpectra::<f64>::new(plan, receptor, ligand, quantity);
+            let spectra = ReceptorSpectra::new(plan, receptor, ligand, quantity, Precision::Double);
             let correlation = TruncatedCorrelation::new(plan, &spectra, ligand, &all);
             (spectra, correlation)
         })
@@ -249,7 +250,7 @@ fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Arc<Plan>, Error> {
 /// What the rows of a ladder of modes are computed from.
 struct Ladder<'a> {
     plan: &'a Plan,
-    spectra: &'a ReceptorSpectra<f64>,
+    spectra: &'a ReceptorSpectra,
     ligand: &'a Knots,
     /// Magnitudes of all modes at the pose's rotation.
     magnitudes: &'a [f64],
@@ -312,11 +313,11 @@ fn rungs(total: usize, requested: Option<usize>) -> Vec<usize> {
 }
 
 /// Largest score of the grid at the pose's rotation.
-fn scale(plan: &Arc<Plan>, spectra: &ReceptorSpectra<f64>, ligand: &Knots, pose: &Pose) -> f64 {
+fn scale(plan: &Arc<Plan>, spectra: &ReceptorSpectra, ligand: &Knots, pose: &Pose) -> f64 {
     let engine = CpuEngine::new(Arc::clone(plan), spectra, ligand, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&pose.rotation, &mut work);
-    error_scale(work.grid.iter().copied(), plan.options().tolerance)
+    error_scale(work.scores.iter(), plan.options().tolerance)
 }
 
 /// Derivatives of score and slices by rho, by central differences of the exact sum.

@@ -9,7 +9,7 @@ use knotdock_scoring::engine::{EngineMemory, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::{Correlation, Correlator as Inner, CorrelatorError, GridPose};
+use knotdock_scoring::{Correlation, Correlator as Inner, CorrelatorError, GridPose, Precision};
 use knotdock_structures::knots::Knots;
 use nalgebra::{Quaternion, UnitQuaternion, Vector3};
 use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
@@ -79,7 +79,7 @@ impl Correlator {
             let remedy = "use a coarser spacing or resolution, or fewer distinct radii";
             return Err(bad_input(py, message, remedy));
         }
-        let inner = py.detach(|| Inner::new(&receptor, &ligand, options));
+        let inner = py.detach(|| Inner::new(&receptor, &ligand, &options));
         let inner = inner.map_err(|error| bad_input(py, error, REMEDY))?;
         Ok(Self {
             exact: inner.exact_scorer(),
@@ -94,7 +94,9 @@ impl Correlator {
         quaternion: [f64; 4],
     ) -> PyResult<Bound<'py, PyArray3<f32>>> {
         let (size, scores) = self.at(py, quaternion, |correlation| {
-            (correlation.size(), correlation.scores().to_vec())
+            let scores = correlation.scores().iter();
+            let scores: Vec<f32> = scores.map(|score| score as f32).collect();
+            (correlation.size(), scores)
         })?;
         scores.into_pyarray(py).reshape(size)
     }
@@ -204,7 +206,7 @@ impl Correlator {
         &self,
         py: Python<'_>,
         quaternion: [f64; 4],
-        read: impl FnOnce(Correlation<'_, f32>) -> T + Send,
+        read: impl FnOnce(Correlation<'_>) -> T + Send,
     ) -> PyResult<T> {
         let rotation = unit(quaternion);
         let found = py.detach(|| self.inner().correlate(&rotation).map(read));
@@ -232,7 +234,7 @@ fn scaled_pose(quaternion: [f64; 4], translation: [f64; 3]) -> Option<Pose> {
 
 /// Memory of a correlator in bytes: spectra, engine and workspace, and the tables of the exact sum.
 fn bytes(plan: &Plan, receptor: &Knots, ligand: &Knots) -> u64 {
-    let memory = EngineMemory::new::<f32>(plan, ligand);
+    let memory = EngineMemory::new(plan, ligand, Precision::Single);
     let functions = plan.functions();
     let radii = |knots: &Knots| knots.radius_classes().0.len() as u64;
     let sums = radii(receptor) * radii(ligand);

@@ -9,7 +9,7 @@ fn main() -> Result<(), Box<dyn std::error::Error>> {
     let receptor = Knots::new(centers.collect(), vec![1.7; 5])?;
     let ligand = Knots::new(vec![[0.0; 3]], vec![1.9])?;
 
-    let mut correlator = Correlator::new(&receptor, &ligand, Options::default())?;
+    let mut correlator = Correlator::new(&receptor, &ligand, &Options::default())?;
     let best = correlator.correlate(&UnitQuaternion::identity())?.best();
     let [x, y, z] = best.pose.translation.into();
     println!("{:.1} at ({x:.1}, {y:.1}, {z:.1})", best.score);

@@ -16,14 +16,13 @@ use crate::engine::{
     measured_error,
 };
 use crate::exact::ExactScorer;
-use crate::grid_turn::GridTurn;
-use crate::peaks::{Peak, find_peaks};
+use crate::peaks::{Peak, PeakLimits, ScoreGrid};
 use crate::potential_grid::PotentialGrid;
+use crate::precision::Precision;
 use crate::quantity::Quantity;
 use crate::se3::Pose;
 use crate::so3::rotation_set;
 use crate::terms::effect::Term;
-use crate::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::UnitQuaternion;
 use std::sync::Arc;
@@ -47,7 +46,7 @@ pub enum CorrelatorError {
     Plan(#[from] PlanError),
     /// The tolerance is below what the floating-point type resolves.
     #[error(
-        "a tolerance of {tolerance:e} is finer than this precision allows; use {finest:e} or more, or Correlator::<f64> in Rust"
+        "a tolerance of {tolerance:e} is finer than this precision allows; use {finest:e} or more, or Precision::Double in Rust"
     )]
     Precision {
         /// The tolerance.
@@ -74,16 +73,16 @@ pub enum CorrelatorError {
 
 /// A pair of knot sets, ready to be correlated: receptor, ligand, plan, spectra, engine and workspace.
 ///
-/// In single precision by default, which serves tolerances down to 1e-4; `Correlator::<f64>` serves those down to 1e-8.
-pub struct Correlator<T: Real = f32> {
+/// [`Self::new`] makes it in single precision, which serves tolerances down to 1e-4.
+pub struct Correlator {
     ligand: Knots,
     plan: Arc<Plan>,
-    spectra: ReceptorSpectra<T>,
-    engine: CpuEngine<T>,
+    spectra: ReceptorSpectra,
+    engine: CpuEngine,
     exact: Arc<ExactScorer>,
     rank_error: f64,
     error: f64,
-    workspace: Workspace<T>,
+    workspace: Workspace,
 }
 
 /// A pose of the translation grid.
@@ -98,10 +97,10 @@ pub struct GridPose {
 }
 
 /// The correlation over all translations at one rotation.
-pub struct Correlation<'a, T: Real> {
-    engine: &'a CpuEngine<T>,
+pub struct Correlation<'a> {
+    engine: &'a CpuEngine,
     rotation: UnitQuaternion<f64>,
-    workspace: &'a mut Workspace<T>,
+    workspace: &'a mut Workspace,
 }
 
 impl Correlator {
@@ -112,24 +111,23 @@ impl Correlator {
     pub fn new(
         receptor: &Knots,
         ligand: &Knots,
-        options: EngineOptions,
+        options: &EngineOptions,
     ) -> Result<Self, CorrelatorError> {
-        Self::with_terms(receptor, ligand, options, Vec::new())
+        Self::with_terms(receptor, ligand, options, Precision::Single, Vec::new())
     }
-}
 
-impl<T: Real> Correlator<T> {
-    /// Prepares the correlation of two knot sets by shape and further terms, in the precision of `T`.
+    /// Prepares the correlation of two knot sets by shape and further terms, in a precision.
     ///
     /// # Errors
     /// [`CorrelatorError`] on knots, options or terms that cannot be used.
     pub fn with_terms(
         receptor: &Knots,
         ligand: &Knots,
-        options: EngineOptions,
+        &options: &EngineOptions,
+        precision: Precision,
         terms: Vec<Term>,
     ) -> Result<Self, CorrelatorError> {
-        let (tolerance, finest) = (options.tolerance, finest_tolerance::<T>());
+        let (tolerance, finest) = (options.tolerance, precision.finest_tolerance());
         if tolerance < finest {
             return Err(CorrelatorError::Precision { tolerance, finest });
         }
@@ -140,7 +138,7 @@ impl<T: Real> Correlator<T> {
         let mut reachable = f64::INFINITY;
         for _ in 0..MOST_PLANS {
             let planned_for = plan.options().tolerance;
-            let found = Self::planned(receptor, ligand, plan)?;
+            let found = Self::planned([receptor, ligand], plan, precision)?;
             let error = found.error;
             if error <= tolerance {
                 return Ok(found);
@@ -169,9 +167,13 @@ impl<T: Real> Correlator<T> {
     }
 
     /// The correlator of a plan, with its measured error.
-    fn planned(receptor: &Knots, ligand: &Knots, plan: Plan) -> Result<Self, CorrelatorError> {
+    fn planned(
+        [receptor, ligand]: [&Knots; 2],
+        plan: Plan,
+        precision: Precision,
+    ) -> Result<Self, CorrelatorError> {
         let plan = Arc::new(plan);
-        let spectra = ReceptorSpectra::new(&plan, receptor, ligand, Quantity::Score);
+        let spectra = ReceptorSpectra::new(&plan, receptor, ligand, Quantity::Score, precision);
         let probes = rotation_set(PROBE_SET);
         let ChosenRank {
             engine,
@@ -205,7 +207,7 @@ impl<T: Real> Correlator<T> {
     pub fn correlate(
         &mut self,
         rotation: &UnitQuaternion<f64>,
-    ) -> Result<Correlation<'_, T>, CorrelatorError> {
+    ) -> Result<Correlation<'_>, CorrelatorError> {
         let norm = rotation.as_ref().norm();
         if norm.is_nan() || (norm - 1.0).abs() > NORM_TOLERANCE {
             return Err(CorrelatorError::Rotation(norm));
@@ -252,35 +254,33 @@ impl<T: Real> Correlator<T> {
     }
 }
 
-impl<T: Real> Correlation<'_, T> {
+impl Correlation<'_> {
     /// Voxels along x, y and z.
     pub fn size(&self) -> [usize; 3] {
         self.engine.plan().size()
     }
 
     /// Scores of all voxels, (nx, ny, nz) row-major.
-    pub fn scores(&self) -> &[T] {
-        &self.workspace.grid
+    pub fn scores(&self) -> &ScoreGrid {
+        &self.workspace.scores
     }
 
     /// The pose of a voxel.
     pub fn pose(&self, voxel: usize) -> Pose {
         let plan = self.engine.plan();
-        let place = plan.receptor_center() + self.engine.position_after(GridTurn::NONE, voxel);
+        let place = plan.receptor_center() + self.engine.position(voxel);
         Pose::about(self.rotation, plan.ligand_center(), place)
     }
 
     /// The voxel of the best score, the first of equals.
     pub fn best(&self) -> GridPose {
-        let scores = self.workspace.grid.iter().enumerate();
-        let start = (0, T::neg_infinity());
+        let scores = self.scores().iter().enumerate();
+        let start = (0, f64::NEG_INFINITY);
         let (voxel, score) = scores.fold(
             start,
-            |best, (voxel, &score)| {
-                if score > best.1 { (voxel, score) } else { best }
-            },
+            |best, next| if next.1 > best.1 { next } else { best },
         );
-        self.grid_pose(voxel, score.wide())
+        self.grid_pose(voxel, score)
     }
 
     /// Up to `count` of the best voxels, best first, none a neighbour of another ([`crate::peaks`]).
@@ -288,15 +288,9 @@ impl<T: Real> Correlation<'_, T> {
     /// Takes the correlation, whose scores it overwrites.
     pub fn peaks(self, count: usize) -> Vec<GridPose> {
         let mut found: Vec<Peak> = Vec::new();
-        let size = self.size();
-        let Workspace { grid, row_best, .. } = &mut *self.workspace;
-        find_peaks(
-            size,
-            (grid, row_best),
-            0,
-            (count, f64::NEG_INFINITY),
-            &mut found,
-        );
+        let floor = f64::NEG_INFINITY;
+        let scores = &mut self.workspace.scores;
+        scores.find_peaks(0, PeakLimits { count, floor }, &mut found);
         let pose = |peak: &Peak| self.grid_pose(peak.voxel as usize, peak.score);
         found.iter().map(pose).collect()
     }
@@ -328,15 +322,6 @@ fn remedy(options: EngineOptions, is_coarse: bool, error: f64) -> String {
     }
 }
 
-/// Finest tolerance that a floating-point type serves: single precision loses digits in the transforms below 1e-4.
-fn finest_tolerance<T: Real>() -> f64 {
-    if T::epsilon().wide() > 1e-10 {
-        1e-4
-    } else {
-        1e-8
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -363,7 +348,7 @@ mod tests {
                 tolerance,
                 ..EngineOptions::default()
             };
-            let mut correlator = Correlator::new(&a, &b, options).unwrap();
+            let mut correlator = Correlator::new(&a, &b, &options).unwrap();
             assert!(correlator.rank_error() <= tolerance / 3.0);
             let scorer = correlator.exact_scorer();
             let potentials = correlator.potential_grid();
@@ -390,17 +375,17 @@ mod tests {
             tolerance,
             ..EngineOptions::default()
         };
-        let single = Correlator::new(&a, &b, with(1e-5)).err();
+        let single = Correlator::new(&a, &b, &with(1e-5)).err();
         assert!(matches!(single, Some(CorrelatorError::Precision { .. })));
-        assert!(Correlator::<f64>::with_terms(&a, &b, with(1e-5), Vec::new()).is_ok());
+        assert!(Correlator::with_terms(&a, &b, &with(1e-5), Precision::Double, Vec::new()).is_ok());
         let mut bad = b.clone();
         bad.radii[0] = f64::NAN;
-        let plan = Correlator::new(&a, &bad, with(1e-2)).err();
+        let plan = Correlator::new(&a, &bad, &with(1e-2)).err();
         assert!(matches!(
             plan,
             Some(CorrelatorError::Plan(PlanError::Knots(_)))
         ));
-        let mut correlator = Correlator::new(&a, &b, with(1e-2)).unwrap();
+        let mut correlator = Correlator::new(&a, &b, &with(1e-2)).unwrap();
         for norm in [f64::NAN, 0.0, 2.0] {
             let rotation =
                 UnitQuaternion::new_unchecked(nalgebra::Quaternion::new(norm, 0.0, 0.0, 0.0));

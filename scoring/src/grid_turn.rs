@@ -78,11 +78,6 @@ impl GridTurn {
         4 * usize::from(self.quarter) + self.half as usize
     }
 
-    /// Whether it needs a box that is as long in y as in z.
-    pub fn swaps_axes(self) -> bool {
-        self.quarter
-    }
-
     /// What each coordinate is multiplied by, after the quarter turn.
     fn signs(self) -> [i32; 3] {
         match self.half {

@@ -21,7 +21,8 @@
 //! - A higher score is better.
 //! - Fourier: f^(w) = sum f(x) exp(-2 pi i w.x); the inverse carries 1 / volume.
 //! - The score is G = -lambda^2 g(0) + 2 lambda g(r0) - g(2 r0), where g(rho) is the correlation's slice at radius sum
-//!   r + s + rho. Source: Behandish & Ilieş, CAD 70, 2016, section 4.2; the sign follows their text ([`affinity`]).
+//!   r + s + rho. Source: Behandish & Ilieş, CAD 70, 2016, section 4.2; the sign follows their text: eq. 52-53 conjugate
+//!   one of two affinity functions and so lose the factor i * i = -1.
 //! - Further effects are weighted terms that add to it, in the same sense and through the same filter.
 //! - Errors are relative: of a score to the best exact score, of a slice to its largest value.
 //!
@@ -29,7 +30,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`kernel`], [`affinity`], [`quantity`] | what shape scores: pair kernels, affinity function, score and slices |
+//! | [`kernel`], [`quantity`] | what shape scores: pair kernels, score and slices |
 //! | [`terms::effect`] | terms of the search: shape, and sums over labelled pairs of knots |
 //! | [`exact`] | the plain pair sum of one pose, which every fast path is tested against |
 //! | [`transform`] | knots to modes and modes to grids |
@@ -44,7 +45,6 @@
 //! | [`symmetry`] | poses of cyclic and dihedral rings |
 //! | [`terms::pose`] | terms that score the poses which a search keeps |
 
-pub mod affinity;
 mod blocks;
 mod correlator;
 pub mod engine;
@@ -56,6 +56,7 @@ pub mod lifted_axis;
 pub mod overlap;
 pub mod peaks;
 pub mod potential_grid;
+mod precision;
 pub mod quantity;
 mod rigid_move;
 pub mod se3;
@@ -72,3 +73,4 @@ pub mod vectorized;
 pub use correlator::{Correlation, Correlator, CorrelatorError, GridPose};
 /// The engine's options, under the name that the front door gives them.
 pub use engine::EngineOptions as Options;
+pub use precision::Precision;

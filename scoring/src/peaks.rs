@@ -1,5 +1,6 @@
 //! Peak picking: the best voxels of one rotation's correlation, at a distance from one another.
 
+use crate::precision::{InPrecision, of_precision};
 use crate::transform::Real;
 use crate::vectorized::vectorized;
 
@@ -28,102 +29,198 @@ impl Peak {
 /// Voxels next to a peak, on each axis and side, that hold no further peak.
 pub const NEIGHBOURS: usize = 2;
 
-/// Appends the `count` best voxels of a periodic grid to `found`, best first, of those that score `floor` or more.
-///
-/// Each lies at least [`NEIGHBOURS`] + 1 voxels from the others along some axis. Ties go to the lower voxel. Fewer are
-/// found where the neighbourhoods of those found leave nothing. `grid` is (nx, ny, nz) row-major, `row_best` holds the
-/// largest value of each row (x, y); both are overwritten with minus infinity around peaks. Values must not be NaN.
-pub fn find_peaks<T: Real>(
-    size: [usize; 3],
-    (grid, row_best): (&mut [T], &mut [T]),
-    rotation: u32,
-    (count, floor): (usize, f64),
-    found: &mut Vec<Peak>,
-) {
-    find_peaks_among(
-        size,
-        (grid, row_best),
-        rotation,
-        (count, floor),
-        found,
-        |_, _| false,
-    );
+/// What a search for peaks returns at the most.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct PeakLimits {
+    /// Number of peaks.
+    pub count: usize,
+    /// Least score.
+    pub floor: f64,
 }
 
-/// [`find_peaks`] among the voxels that `check` leaves.
-///
-/// It is called with a row that holds the largest value, and the row's values. It sets those that may be no peak to
-/// minus infinity and returns true, or returns false where it has done so before.
-pub fn find_peaks_among<T: Real>(
+/// Scores of all translations at one rotation, (nx, ny, nz) row-major, in single or double precision.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ScoreGrid(pub(crate) InPrecision<Rows<f32>, Rows<f64>>);
+
+/// Scores in one floating-point type.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Rows<T> {
     size: [usize; 3],
-    (grid, row_best): (&mut [T], &mut [T]),
-    rotation: u32,
-    (count, floor): (usize, f64),
-    found: &mut Vec<Peak>,
-    mut check: impl FnMut(usize, &mut [T]) -> bool,
-) {
-    vectorized(
-        #[inline(always)]
-        || {
-            find(
-                size,
-                (grid, row_best),
+    pub values: Vec<T>,
+    /// Largest score of each row (x, y).
+    pub best: Vec<T>,
+    /// Whether each voxel of a row may hold a peak.
+    open: Vec<bool>,
+}
+
+impl ScoreGrid {
+    /// A grid of given scores, in single precision.
+    ///
+    /// # Panics
+    /// If there is not one score per voxel.
+    pub fn of_scores(size: [usize; 3], scores: Vec<f32>) -> Self {
+        let mut rows = Rows::new(size);
+        assert_eq!(scores.len(), rows.values.len(), "one score per voxel");
+        rows.values = scores;
+        for (row, best) in rows.values.chunks_exact(size[2]).zip(&mut rows.best) {
+            *best = largest(row);
+        }
+        Self(InPrecision::Single(rows))
+    }
+
+    /// Number of voxels.
+    pub fn count(&self) -> usize {
+        of_precision!(&self.0, rows => rows.values.len())
+    }
+
+    /// Score of a voxel.
+    pub fn score(&self, voxel: usize) -> f64 {
+        of_precision!(&self.0, rows => rows.values[voxel].wide())
+    }
+
+    /// Scores of all voxels.
+    pub fn iter(&self) -> impl Iterator<Item = f64> + '_ {
+        (0..self.count()).map(|voxel| self.score(voxel))
+    }
+
+    /// Scores of all voxels as an array.
+    pub fn to_vec(&self) -> Vec<f64> {
+        self.iter().collect()
+    }
+
+    /// Takes voxels out: `open` gets each row with a mark for each of its voxels, and clears those that may be no peak.
+    /// Their scores become minus infinity.
+    pub fn restrict(&mut self, open: &mut dyn FnMut(usize, &mut [bool])) {
+        of_precision!(&mut self.0, rows => rows.restrict(open));
+    }
+
+    /// Appends the best voxels to `found`, best first.
+    ///
+    /// Each lies at least [`NEIGHBOURS`] + 1 voxels from the others along some axis of the periodic grid. Ties go to the
+    /// lower voxel. Fewer are found if the neighbourhoods of those found leave nothing. Scores around peaks are
+    /// overwritten with minus infinity. Scores must not be NaN.
+    pub fn find_peaks(&mut self, rotation: u32, limits: PeakLimits, found: &mut Vec<Peak>) {
+        self.find_peaks_among(rotation, limits, found, &mut |_, _| false);
+    }
+
+    /// [`Self::find_peaks`] among the voxels that `check` leaves.
+    ///
+    /// It gets a row that holds the largest score, with a mark for each voxel that may be a peak, clears those that may
+    /// be none and returns true. It returns false for a row that it has checked before.
+    pub fn find_peaks_among(
+        &mut self,
+        rotation: u32,
+        limits: PeakLimits,
+        found: &mut Vec<Peak>,
+        check: &mut dyn FnMut(usize, &mut [bool]) -> bool,
+    ) {
+        of_precision!(&mut self.0, rows => rows.find(rotation, limits, found, check));
+    }
+}
+
+impl<T: Real> Rows<T> {
+    /// All zero.
+    pub fn new(size: [usize; 3]) -> Self {
+        let [nx, ny, nz] = size;
+        Self {
+            size,
+            values: vec![T::zero(); nx * ny * nz],
+            best: vec![T::zero(); nx * ny],
+            open: vec![true; nz],
+        }
+    }
+
+    fn restrict(&mut self, open: &mut dyn FnMut(usize, &mut [bool])) {
+        let rows = self.values.chunks_exact_mut(self.size[2]);
+        for (row, (values, best)) in rows.zip(&mut self.best).enumerate() {
+            self.open.fill(true);
+            open(row, &mut self.open);
+            vectorized(
+                #[inline(always)]
+                || *best = keep(&self.open, values),
+            );
+        }
+    }
+
+    fn find(
+        &mut self,
+        rotation: u32,
+        limits: PeakLimits,
+        found: &mut Vec<Peak>,
+        check: &mut dyn FnMut(usize, &mut [bool]) -> bool,
+    ) {
+        vectorized(
+            #[inline(always)]
+            || self.find_inline(rotation, limits, found, check),
+        );
+    }
+
+    #[inline(always)]
+    fn find_inline(
+        &mut self,
+        rotation: u32,
+        limits: PeakLimits,
+        found: &mut Vec<Peak>,
+        check: &mut dyn FnMut(usize, &mut [bool]) -> bool,
+    ) {
+        let Self {
+            size: [nx, ny, nz],
+            values: grid,
+            best: row_best,
+            open,
+        } = self;
+        let (nx, ny, nz) = (*nx, *ny, *nz);
+        let side = |n: usize| NEIGHBOURS.min((n - 1) / 2) as isize;
+        let mut left = limits.count;
+        while left > 0 {
+            let Some((row, score)) = best(row_best) else {
+                return;
+            };
+            if score.wide() < limits.floor {
+                return;
+            }
+            let values = &mut grid[row * nz..(row + 1) * nz];
+            for (open, value) in open.iter_mut().zip(&*values) {
+                *open = *value > T::neg_infinity() && value.wide() >= limits.floor;
+            }
+            if check(row, open) {
+                row_best[row] = keep(open, values);
+                continue;
+            }
+            let Some((z, _)) = best(values) else {
+                return;
+            };
+            left -= 1;
+            found.push(Peak {
+                score: score.wide(),
                 rotation,
-                (count, floor),
-                found,
-                &mut check,
-            )
-        },
-    );
-}
-
-#[inline(always)]
-fn find<T: Real>(
-    size: [usize; 3],
-    (grid, row_best): (&mut [T], &mut [T]),
-    rotation: u32,
-    (count, floor): (usize, f64),
-    found: &mut Vec<Peak>,
-    check: &mut impl FnMut(usize, &mut [T]) -> bool,
-) {
-    let [nx, ny, nz] = size;
-    let side = |n: usize| NEIGHBOURS.min((n - 1) / 2) as isize;
-    let mut left = count;
-    while left > 0 {
-        let Some((row, score)) = best(row_best) else {
-            return;
-        };
-        if score.wide() < floor {
-            return;
-        }
-        let values = &mut grid[row * nz..(row + 1) * nz];
-        if check(row, values) {
-            row_best[row] = largest(values);
-            continue;
-        }
-        let Some((z, _)) = best(values) else {
-            return;
-        };
-        left -= 1;
-        found.push(Peak {
-            score: score.wide(),
-            rotation,
-            voxel: (row * nz + z) as u32,
-        });
-        let (x, y) = (row / ny, row % ny);
-        for dx in -side(nx)..=side(nx) {
-            for dy in -side(ny)..=side(ny) {
-                let wrap =
-                    |i: usize, d: isize, n: usize| (i as isize + d).rem_euclid(n as isize) as usize;
-                let row = wrap(x, dx, nx) * ny + wrap(y, dy, ny);
-                let values = &mut grid[row * nz..(row + 1) * nz];
-                for dz in -side(nz)..=side(nz) {
-                    values[wrap(z, dz, nz)] = T::neg_infinity();
+                voxel: (row * nz + z) as u32,
+            });
+            let (x, y) = (row / ny, row % ny);
+            for dx in -side(nx)..=side(nx) {
+                for dy in -side(ny)..=side(ny) {
+                    let wrap = |i: usize, d: isize, n: usize| {
+                        (i as isize + d).rem_euclid(n as isize) as usize
+                    };
+                    let row = wrap(x, dx, nx) * ny + wrap(y, dy, ny);
+                    let values = &mut grid[row * nz..(row + 1) * nz];
+                    for dz in -side(nz)..=side(nz) {
+                        values[wrap(z, dz, nz)] = T::neg_infinity();
+                    }
+                    row_best[row] = largest(values);
                 }
-                row_best[row] = largest(values);
             }
         }
     }
+}
+
+/// Sets the values of a row that are not open to minus infinity; returns the largest of the others.
+#[inline(always)]
+fn keep<T: Real>(open: &[bool], values: &mut [T]) -> T {
+    for (value, open) in values.iter_mut().zip(open) {
+        *value = if *open { *value } else { T::neg_infinity() };
+    }
+    largest(values)
 }
 
 /// Largest of some values, in lanes so that it vectorises.
@@ -166,6 +263,10 @@ mod tests {
     use super::*;
     use crate::test_support::Numbers;
 
+    fn limits(count: usize, floor: f64) -> PeakLimits {
+        PeakLimits { count, floor }
+    }
+
     #[test]
     fn peaks_are_the_best_and_spaced_across_the_periodic_edge() {
         let size = [8, 8, 8];
@@ -175,13 +276,9 @@ mod tests {
         grid[at(7, 7, 7)] = 8.0; // a neighbour of the first through the edge
         grid[at(4, 4, 4)] = 7.0;
         grid[at(4, 4, 1)] = 7.0; // a tie: the lower voxel comes first
-        let mut rows: Vec<f32> = grid
-            .chunks(8)
-            .map(|r| r.iter().copied().fold(f32::MIN, f32::max))
-            .collect();
         let mut found = Vec::new();
-        let values = (&mut grid[..], &mut rows[..]);
-        find_peaks(size, values, 5, (3, 7.0), &mut found);
+        let mut grid = ScoreGrid::of_scores(size, grid);
+        grid.find_peaks(5, limits(3, 7.0), &mut found);
         let voxels: Vec<u32> = found.iter().map(|p| p.voxel).collect();
         assert_eq!(
             voxels,
@@ -197,8 +294,8 @@ mod tests {
         for size in [[5, 6, 7], [4, 9, 3], [1, 2, 8], [12, 5, 10]] {
             let [nx, ny, nz] = size;
             // Few distinct values, so that ties are common.
-            let grid: Vec<f64> = (0..nx * ny * nz)
-                .map(|_| (40.0 * numbers.next()).floor() - 20.0)
+            let grid: Vec<f32> = (0..nx * ny * nz)
+                .map(|_| (40.0 * numbers.next()).floor() as f32 - 20.0)
                 .collect();
             let mut expected: Vec<(usize, f64)> = Vec::new();
             let near = |a: usize, b: usize| {
@@ -216,14 +313,12 @@ mod tests {
                 let Some(best) = free.reduce(|a, b| if grid[b] > grid[a] { b } else { a }) else {
                     break;
                 };
-                expected.push((best, grid[best]));
+                expected.push((best, f64::from(grid[best])));
             }
-            let rows: Vec<f64> = grid.chunks(nz).map(largest).collect();
+            let grid = ScoreGrid::of_scores(size, grid);
             for floor in [f64::NEG_INFINITY, 17.0, 100.0] {
-                let (mut grid, mut rows) = (grid.clone(), rows.clone());
                 let mut found = Vec::new();
-                let values = (&mut grid[..], &mut rows[..]);
-                find_peaks(size, values, 0, (30, floor), &mut found);
+                grid.clone().find_peaks(0, limits(30, floor), &mut found);
                 let found = found.iter().map(|p| (p.voxel as usize, p.score));
                 let expected = expected.iter().filter(|(_, score)| *score >= floor);
                 assert!(found.eq(expected.copied()), "{size:?}");
@@ -233,11 +328,9 @@ mod tests {
 
     #[test]
     fn a_tiny_grid_gives_all_its_voxels() {
-        let mut grid = [1.0f32, 2.0];
-        let mut rows = [2.0f32];
         let mut found = Vec::new();
-        let values = (&mut grid[..], &mut rows[..]);
-        find_peaks([1, 1, 2], values, 0, (5, f64::NEG_INFINITY), &mut found);
+        let mut grid = ScoreGrid::of_scores([1, 1, 2], vec![1.0, 2.0]);
+        grid.find_peaks(0, limits(5, f64::NEG_INFINITY), &mut found);
         assert_eq!(found.len(), 2);
     }
 }

@@ -67,7 +67,7 @@ impl PotentialGrid {
     }
 
     /// Samples the potentials from the receptor's spectra.
-    pub fn new<T: Real>(plan: &Plan, spectra: &ReceptorSpectra<T>, ligand: &Knots) -> Self {
+    pub fn new(plan: &Plan, spectra: &ReceptorSpectra, ligand: &Knots) -> Self {
         let modes = plan.modes();
         let size = fine_size(plan);
         let oversampling = (0..3)
@@ -228,11 +228,7 @@ impl<'a> Sampler<'a> {
     }
 
     /// The grid of the weighted sum of some functions, rows padded to the stride.
-    fn sample<T: Real>(
-        &mut self,
-        spectra: &ReceptorSpectra<T>,
-        functions: &[(usize, f32)],
-    ) -> Vec<f32> {
+    fn sample(&mut self, spectra: &ReceptorSpectra, functions: &[(usize, f32)]) -> Vec<f32> {
         self.fill(spectra, functions);
         self.along_x.process(&mut self.spectrum);
         self.transform_y();
@@ -240,7 +236,7 @@ impl<'a> Sampler<'a> {
     }
 
     /// Fills the spectrum with the weighted sum, divided by the window's transform.
-    fn fill<T: Real>(&mut self, spectra: &ReceptorSpectra<T>, functions: &[(usize, f32)]) {
+    fn fill(&mut self, spectra: &ReceptorSpectra, functions: &[(usize, f32)]) {
         let Self { modes, factors, .. } = self;
         let [mx, my, _] = self.size;
         let zero = Complex::new(0.0f32, 0.0);
@@ -253,9 +249,8 @@ impl<'a> Sampler<'a> {
                 let factor = (outer * factors[0][k.unsigned_abs() as usize]) as f32;
                 let at = (column.kz as usize * my + place(column.ky, my)) * mx + place(k, mx);
                 let source = functions.iter().fold(zero, |sum, &(function, weight)| {
-                    let value = spectra.spectra()[function][column.start + i];
-                    let single = |part: T| f32::of(part.wide());
-                    sum + Complex::new(single(value.re), single(value.im)).scale(weight)
+                    let value = spectra.value(function, column.start + i);
+                    sum + Complex::new(value.re as f32, value.im as f32).scale(weight)
                 });
                 self.spectrum[at] = source.scale(factor);
             }

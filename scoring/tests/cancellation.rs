@@ -1,11 +1,11 @@
 //! Scores that are far smaller than the kernel: slices that cancel, and balls much larger than their skin.
 
 use crate::scene::{RADII, cloud, engine_options, kernel_options, some_rotation};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::EngineOptions;
 use knotdock_scoring::kernel::{KernelOptions, RankingKernel};
 use knotdock_scoring::lifted_axis::LiftedAxis;
 use knotdock_scoring::quantity::Quantity;
-use knotdock_scoring::transform::Real;
 use knotdock_scoring::{Correlator, CorrelatorError};
 use knotdock_structures::Knots;
 use num_complex::Complex64;
@@ -57,8 +57,8 @@ fn the_series_converges_to_the_score_where_its_slices_cancel() {
 
 /// Error of a correlator against the pair sum at the 100 best voxels of a rotation that is none of its probes and at
 /// every 97th, relative to the best score there.
-fn error<T: Real>(a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
-    let correlator = Correlator::<T>::with_terms(a, b, options, Vec::new());
+fn error(precision: Precision, a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
+    let correlator = Correlator::with_terms(a, b, &options, precision, Vec::new());
     let mut correlator =
         correlator.unwrap_or_else(|refused| panic!("{:?}: {refused}", options.kernel));
     let reported = correlator.error();
@@ -66,21 +66,21 @@ fn error<T: Real>(a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
     let (scorer, plan) = (correlator.exact_scorer(), correlator.plan().clone());
     let correlation = correlator.correlate(&some_rotation()).unwrap();
     let scores = correlation.scores();
-    let mut order: Vec<usize> = (0..scores.len()).collect();
-    order.sort_by(|&x, &y| scores[y].wide().total_cmp(&scores[x].wide()));
+    let mut order: Vec<usize> = (0..scores.count()).collect();
+    order.sort_by(|&x, &y| scores.score(y).total_cmp(&scores.score(x)));
     let (mut worst, mut best) = (0.0f64, 0.0f64);
     let sweep = order.iter().step_by(97);
     for &voxel in order.iter().take(100).chain(sweep) {
         let exact = scorer.score_only(&correlation.pose(voxel));
-        worst = worst.max((exact - scores[voxel].wide()).abs());
+        worst = worst.max((exact - scores.score(voxel)).abs());
         best = best.max(exact);
     }
     println!(
-        "lambda {}, r0 {}, {:e} in {} bytes: {:.1e} of {best:.2e}, reported {reported:.1e}; planned for {:.1e}, {:?}",
+        "lambda {}, r0 {}, {:e} in {:?}: {:.1e} of {best:.2e}, reported {reported:.1e}; planned for {:.1e}, {:?}",
         options.kernel.lambda,
         options.kernel.offset,
         options.tolerance,
-        size_of::<T>(),
+        precision,
         worst / best,
         plan.options().tolerance,
         plan.size(),
@@ -99,9 +99,9 @@ fn scores_that_cancel_are_within_the_tolerance_of_the_best() {
         (1.01, 1e-2),
         (2.0, 0.1),
     ] {
-        let single = error::<f32>(&a, &b, options(lambda, offset, 1e-2));
+        let single = error(Precision::Single, &a, &b, options(lambda, offset, 1e-2));
         assert!(single <= 1e-2, "{lambda}, {offset}: {single:e}");
-        let double = error::<f64>(&a, &b, options(lambda, offset, 1e-3));
+        let double = error(Precision::Double, &a, &b, options(lambda, offset, 1e-3));
         assert!(double <= 1e-3, "{lambda}, {offset}: {double:e}");
     }
 }
@@ -120,7 +120,7 @@ fn balls_much_larger_than_their_skin_are_within_the_tolerance() {
         let mut options = options(9.0, 2.2, 1e-2);
         options.kernel.resolution = resolution;
         options.kernel.pass_length = 2.0 * resolution;
-        let error = error::<f32>(&a, &b, options);
+        let error = error(Precision::Single, &a, &b, options);
         assert!(error <= 1e-2, "{radii:?} at {resolution}: {error:e}");
     }
 }
@@ -130,7 +130,7 @@ fn balls_much_larger_than_their_skin_are_within_the_tolerance() {
 fn a_correlator_refuses_a_tolerance_that_it_cannot_keep() {
     let (a, b) = (cloud(80, 9.0, &RADII, 1), cloud(30, 6.0, &RADII, 2));
     for (lambda, offset) in [(9.0, 2.2), (1.0, 0.03), (1.0, 1e-3), (0.0, 2.2), (9.0, 0.0)] {
-        let correlator = Correlator::new(&a, &b, options(lambda, offset, 1e-2));
+        let correlator = Correlator::new(&a, &b, &options(lambda, offset, 1e-2));
         let error = correlator.map(|correlator| correlator.error());
         println!("{lambda}, {offset}: {error:?}");
         assert!(
@@ -138,7 +138,7 @@ fn a_correlator_refuses_a_tolerance_that_it_cannot_keep() {
             "{lambda}, {offset}: {error:?}"
         );
     }
-    let refused = |options| match Correlator::new(&a, &b, options).err() {
+    let refused = |options| match Correlator::new(&a, &b, &options).err() {
         Some(CorrelatorError::Unreachable {
             reachable, remedy, ..
         }) => {
@@ -167,6 +167,6 @@ fn a_correlator_refuses_a_tolerance_that_it_cannot_keep() {
     assert!(error > 1e-4, "{error}");
     let named = remedy.split(' ').find_map(|word| word.parse().ok());
     let named = named.unwrap_or_else(|| panic!("{remedy}"));
-    let error = self::error::<f32>(&a, &b, options(1.0, 2.0, named));
+    let error = self::error(Precision::Single, &a, &b, options(1.0, 2.0, named));
     assert!(error <= named, "{named}: {error}");
 }

@@ -1,6 +1,7 @@
 //! Effects beside shape: each by the fast path, run alone, against its exact pair sum, that against a plain double
 //! loop, and scenes whose answer is known.
 
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::KernelOptions;
@@ -10,7 +11,6 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::contact::{self, Potential};
 use knotdock_scoring::terms::effect::restraint::{ResidueRole, Weights};
 use knotdock_scoring::terms::effect::{ActiveTerm, Effect, Term, electrostatics, restraint};
-use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
@@ -100,10 +100,16 @@ fn turn() -> UnitQuaternion<f64> {
 
 /// Largest error of `effect` alone, or of all, over the grid's best and a sweep of it. It is a share of the largest
 /// exact value there; of a restraint, which is nowhere above 0, of the largest magnitude.
-fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) -> f64 {
+fn worst(
+    precision: Precision,
+    a: &Knots,
+    b: &Knots,
+    tolerance: f64,
+    effect: Option<Effect>,
+) -> f64 {
     let plan = plan(a, b, tolerance);
     let scorer = scorer(&plan, a, b);
-    let mut spectra = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
+    let mut spectra = ReceptorSpectra::new(&plan, a, b, Quantity::Score, precision);
     if let Some(effect) = effect {
         for other in Effect::ALL.into_iter().filter(|other| *other != effect) {
             spectra = spectra.without(other);
@@ -112,15 +118,20 @@ fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, effect: Option<Effect>) 
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turn(), &mut work);
-    let mut order: Vec<usize> = (0..work.grid.len()).collect();
-    order.sort_by(|&x, &y| work.grid[y].partial_cmp(&work.grid[x]).unwrap());
+    let mut order: Vec<usize> = (0..work.scores.count()).collect();
+    order.sort_by(|&x, &y| {
+        work.scores
+            .score(y)
+            .partial_cmp(&work.scores.score(x))
+            .unwrap()
+    });
     let sweep = order.iter().copied().step_by(order.len() / 200);
     let (mut error, mut best) = (0.0f64, 0.0f64);
     for voxel in order[..100].iter().copied().chain(sweep) {
         let place = plan.receptor_center() + engine.position(voxel);
         let exact = scorer.score(&Pose::about(turn(), plan.ligand_center(), place));
         let value = effect.map_or(exact.score, |effect| exact.terms[effect as usize]);
-        error = error.max((value - work.grid[voxel].wide()).abs());
+        error = error.max((value - work.scores.score(voxel)).abs());
         best = best.max(match effect {
             Some(Effect::Restraint) => value.abs(),
             _ => value,
@@ -135,11 +146,11 @@ fn each_term_alone_and_all_together_meet_the_requested_tolerance() {
     let alone = Effect::ALL.into_iter().skip(1).map(Some);
     for effect in alone.chain([None]) {
         for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
-            let error = worst::<f64>(&a, &b, tolerance, effect);
+            let error = worst(Precision::Double, &a, &b, tolerance, effect);
             assert!(error <= tolerance, "{effect:?} at {tolerance:e}: {error:e}");
         }
         for tolerance in [1e-2, 1e-4] {
-            let error = worst::<f32>(&a, &b, tolerance, effect);
+            let error = worst(Precision::Single, &a, &b, tolerance, effect);
             assert!(
                 error <= tolerance,
                 "{effect:?}, f32 at {tolerance:e}: {error:e}"
@@ -213,12 +224,12 @@ fn the_field_reads_all_terms() {
     let (a, b) = (cloud(160, 12.0, 5), cloud(60, 8.0, 6));
     let plan = plan(&a, &b, 1e-2);
     let scorer = scorer(&plan, &a, &b);
-    let spectra = ReceptorSpectra::<f32>::new(&plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Single);
     let field = PotentialGrid::new(&plan, &spectra, &b);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turn(), &mut work);
-    let scale = f64::from(work.grid.iter().copied().fold(0.0, f32::max));
+    let scale = work.scores.iter().fold(0.0, f64::max);
     // The plan's tolerance, against the exact sum; the grid's own error is a hundredth of it (potential_grid.rs).
     // Strewn knots touch in few places: their best score is a tenth of a protein's.
     let bound = 2e-2;
@@ -238,12 +249,12 @@ fn the_field_reads_all_terms() {
 fn effects_add_up() {
     let (a, b) = (cloud(80, 10.0, 17), cloud(40, 7.0, 18));
     let plan = plan(&a, &b, 1e-2);
-    let whole = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
-    let grid = |spectra: &ReceptorSpectra<f64>| {
+    let whole = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Double);
+    let grid = |spectra: &ReceptorSpectra| {
         let engine = CpuEngine::new(Arc::clone(&plan), spectra, &b, spectra.full_rank());
         let mut work = engine.workspace();
         engine.correlate(&turn(), &mut work);
-        work.grid
+        work.scores.to_vec()
     };
     let together = grid(&whole);
     let mut sum = vec![0.0; together.len()];
@@ -283,7 +294,7 @@ fn effects_add_up() {
 fn the_sum_over_voxels_is_the_zero_mode() {
     let (a, b) = (cloud(60, 9.0, 19), cloud(30, 6.0, 20));
     let plan = plan(&a, &b, 1e-6);
-    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Double);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turn(), &mut work);
@@ -309,8 +320,8 @@ fn the_sum_over_voxels_is_the_zero_mode() {
             }
         }
     }
-    let voxels = work.grid.len() as f64;
-    let sum: f64 = work.grid.iter().sum();
+    let voxels = work.scores.count() as f64;
+    let sum: f64 = work.scores.iter().sum();
     let mean = sum / voxels * plan.modes().volume();
     let error = (mean - zero_mode).abs() / size;
     assert!(error < 1e-6, "{mean} {zero_mode}: {error:e}");
@@ -323,16 +334,16 @@ fn an_effect_that_is_off_changes_not_one_bit() {
     let bare = |knots: &Knots| Knots::new(knots.centers.clone(), knots.radii.clone()).unwrap();
     let grid = |a: &Knots, b: &Knots| {
         let plan = Arc::new(Plan::new(a, b, options(1e-2)).unwrap());
-        let spectra = ReceptorSpectra::<f32>::new(&plan, a, b, Quantity::Score);
+        let spectra = ReceptorSpectra::new(&plan, a, b, Quantity::Score, Precision::Single);
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
         let mut work = engine.workspace();
         engine.correlate(&turn(), &mut work);
-        (spectra.full_rank(), work.grid)
+        (spectra.full_rank(), work.scores.to_vec())
     };
     let (rank, plain) = grid(&bare(&a), &bare(&b));
     assert_eq!(grid(&a, &b), (rank, plain));
     let plan = plan(&a, &b, 1e-2);
-    let whole = ReceptorSpectra::<f32>::new(&plan, &a, &b, Quantity::Score);
+    let whole = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Single);
     let without = whole
         .without(Effect::Contact)
         .without(Effect::Restraint)
@@ -421,12 +432,12 @@ fn patched(charge: [f64; 2], types: [&str; 2], patch: f64) -> Knots {
 /// The direction from the receptor's centre in which the best voxel of a correlation lies.
 fn best_direction(a: &Knots, b: &Knots, terms: Vec<Term>) -> Vector3<f64> {
     let plan = planned(a, b, 1e-2, terms);
-    let spectra = ReceptorSpectra::<f32>::new(&plan, a, b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&plan, a, b, Quantity::Score, Precision::Single);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&UnitQuaternion::identity(), &mut work);
-    let best = (0..work.grid.len())
-        .max_by(|&x, &y| work.grid[x].total_cmp(&work.grid[y]))
+    let best = (0..work.scores.count())
+        .max_by(|&x, &y| work.scores.score(x).total_cmp(&work.scores.score(y)))
         .unwrap();
     engine.position(best).normalize()
 }

@@ -4,7 +4,7 @@
 
 use crate::scene;
 use crate::scene::{Pair, RADII, askew_cloud, cloud, engine_options as options};
-use knotdock_scoring::affinity::DoubleSkin;
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -12,7 +12,6 @@ use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::kernel::Trim;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
@@ -21,23 +20,25 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 
 /// Worst error over a sweep of voxels and the best ones, as a share of the best exact value.
-fn worst<T: Real>(a: &Knots, b: &Knots, tolerance: f64, quantity: Quantity) -> f64 {
-    worst_after::<T>(a, b, tolerance, quantity, GridTurn::NONE)
+fn worst(precision: Precision, a: &Knots, b: &Knots, tolerance: f64, quantity: Quantity) -> f64 {
+    worst_after(precision, a, b, tolerance, quantity, GridTurn::NONE)
 }
 
 /// The same where a half-turn of the grid follows the rotation, so that the ligand's transform is read mirrored.
-fn worst_after<T: Real>(
+fn worst_after(
+    precision: Precision,
     a: &Knots,
     b: &Knots,
     tolerance: f64,
     quantity: Quantity,
     half_turn: GridTurn,
 ) -> f64 {
-    worst_of::<T>(a, b, options(tolerance), quantity, half_turn)
+    worst_of(precision, a, b, options(tolerance), quantity, half_turn)
 }
 
 /// The same of any options.
-fn worst_of<T: Real>(
+fn worst_of(
+    precision: Precision,
     a: &Knots,
     b: &Knots,
     options: EngineOptions,
@@ -46,15 +47,20 @@ fn worst_of<T: Real>(
 ) -> f64 {
     let plan = Arc::new(Plan::new(a, b, options).unwrap());
     let scorer = ExactScorer::new(plan.kernel(), a, b).unwrap();
-    let spectra = ReceptorSpectra::<T>::new(&plan, a, b, quantity);
+    let spectra = ReceptorSpectra::new(&plan, a, b, quantity, precision);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     let turned = Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation;
     engine.transform_ligand(&turned, &mut work);
     engine.correlate_turned(half_turn, &mut work);
     let rotation = half_turn.after(&turned);
-    let mut order: Vec<usize> = (0..work.grid.len()).collect();
-    order.sort_by(|&x, &y| work.grid[y].partial_cmp(&work.grid[x]).unwrap());
+    let mut order: Vec<usize> = (0..work.scores.count()).collect();
+    order.sort_by(|&x, &y| {
+        work.scores
+            .score(y)
+            .partial_cmp(&work.scores.score(x))
+            .unwrap()
+    });
     let sweep = order.iter().copied().step_by(order.len() / 150);
     let (mut error, mut best) = (0.0f64, 0.0f64);
     for voxel in order[..100].iter().copied().chain(sweep) {
@@ -65,7 +71,7 @@ fn worst_of<T: Real>(
             Quantity::Slice(slice) => exact.slices[slice],
             other => unreachable!("the exact sum has no {other:?}"),
         };
-        error = error.max((value - work.grid[voxel].wide()).abs());
+        error = error.max((value - work.scores.score(voxel)).abs());
         best = best.max(value);
     }
     error / best
@@ -75,12 +81,12 @@ fn worst_of<T: Real>(
 fn scores_meet_the_requested_tolerance() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
-        let error = worst::<f64>(&a, &b, tolerance, Quantity::Score);
+        let error = worst(Precision::Double, &a, &b, tolerance, Quantity::Score);
         println!("f64 {tolerance:e}: {error:.2e}");
         assert!(error <= tolerance, "f64 at {tolerance:e}: {error:e}");
     }
     for tolerance in [1e-2, 1e-3, 1e-4] {
-        let error = worst::<f32>(&a, &b, tolerance, Quantity::Score);
+        let error = worst(Precision::Single, &a, &b, tolerance, Quantity::Score);
         println!("f32 {tolerance:e}: {error:.2e}");
         assert!(error <= tolerance, "f32 at {tolerance:e}: {error:e}");
     }
@@ -94,7 +100,14 @@ fn scores_meet_the_tolerance_with_the_trim_of_behandish_and_ilies() {
         for tolerance in [1e-2, 1e-3, 1e-4] {
             let mut options = options(tolerance);
             options.kernel.trim = Trim::BehandishIlies { length };
-            let error = worst_of::<f64>(&a, &b, options, Quantity::Score, GridTurn::NONE);
+            let error = worst_of(
+                Precision::Double,
+                &a,
+                &b,
+                options,
+                Quantity::Score,
+                GridTurn::NONE,
+            );
             println!("{length} {tolerance:e}: {error:.2e}");
             assert!(error <= tolerance, "{length} at {tolerance:e}: {error:e}");
         }
@@ -126,7 +139,7 @@ fn slices_meet_the_requested_tolerance() {
     let (a, b) = (cloud(160, 12.0, &RADII, 3), cloud(60, 8.0, &RADII, 4));
     for tolerance in [1e-2, 1e-4, 1e-6] {
         for slice in 0..3 {
-            let error = worst::<f64>(&a, &b, tolerance, Quantity::Slice(slice));
+            let error = worst(Precision::Double, &a, &b, tolerance, Quantity::Slice(slice));
             assert!(
                 error <= tolerance,
                 "slice {slice} at {tolerance:e}: {error:e}"
@@ -155,7 +168,7 @@ fn cut_modes_stay_within_the_tolerance() {
                     }
                     let mut options = options(tolerance);
                     (options.kernel.offset, options.kernel.alpha) = (offset, alpha);
-                    let pair = scene::Pair::<f64>::new(&a, &b, options);
+                    let pair = scene::Pair::new(Precision::Double, &a, &b, options);
                     let voxels = pair.plan.size().iter().product::<usize>();
                     let (error, best) = pair.error(scene::some_rotation(), voxels / 100, 50);
                     let share = error / (tolerance * best);
@@ -179,7 +192,14 @@ fn half_turns_read_the_same_transform() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
     for half_turn in GridTurn::HALF_TURNS {
         for tolerance in [1e-2, 1e-4] {
-            let error = worst_after::<f64>(&a, &b, tolerance, Quantity::Score, half_turn);
+            let error = worst_after(
+                Precision::Double,
+                &a,
+                &b,
+                tolerance,
+                Quantity::Score,
+                half_turn,
+            );
             assert!(
                 error <= tolerance,
                 "{half_turn:?} at {tolerance:e}: {error:e}"
@@ -194,7 +214,7 @@ fn half_turns_read_the_same_transform() {
 fn turns_of_a_fitted_grid_read_the_same_transform() {
     let (a, b) = (askew_cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));
     for tolerance in [1e-2, 1e-4] {
-        let pair = Pair::<f64>::fitted(&a, &b, options(tolerance));
+        let pair = Pair::fitted(Precision::Double, &a, &b, options(tolerance));
         let (frame, engine) = (pair.plan.frame(), &pair.engine);
         assert!(frame.angle() > 0.1, "{}", frame.angle());
         assert_eq!(engine.turns(), GridTurn::ALL);
@@ -203,21 +223,20 @@ fn turns_of_a_fitted_grid_read_the_same_transform() {
         engine.transform_ligand(&turned, &mut together);
         let mut one = engine.workspace();
         engine.transform_ligand(&turned, &mut one);
-        engine.correlate_each(&GridTurn::ALL, &mut together, |place, work| {
+        engine.correlate_each(&GridTurn::ALL, &mut together, &mut |place, scores| {
             let turn = GridTurn::ALL[place];
             engine.correlate_turned(turn, &mut one);
-            assert_eq!(one.grid, work.grid, "{turn:?}: alone and with others");
-            assert_eq!(one.row_best, work.row_best);
+            assert_eq!(&one.scores, scores, "{turn:?}: alone and with others");
             let rotation = frame.inverse() * turn.after(&(frame * turned));
-            let mut order: Vec<usize> = (0..work.grid.len()).collect();
-            order.sort_by(|&x, &y| work.grid[y].total_cmp(&work.grid[x]));
+            let mut order: Vec<usize> = (0..scores.count()).collect();
+            order.sort_by(|&x, &y| scores.score(y).total_cmp(&scores.score(x)));
             let sweep = order.iter().copied().step_by(order.len() / 150);
             let (mut error, mut best) = (0.0f64, 0.0f64);
             for voxel in order[..100].iter().copied().chain(sweep) {
                 let place = pair.plan.receptor_center() + engine.position_after(turn, voxel);
                 let pose = Pose::about(rotation, pair.plan.ligand_center(), place);
                 let exact = pair.scorer.score_only(&pose);
-                error = error.max((exact - work.grid[voxel]).abs());
+                error = error.max((exact - scores.score(voxel)).abs());
                 best = best.max(exact);
             }
             assert!(error <= tolerance * best, "{turn:?}: {:e}", error / best);
@@ -231,7 +250,7 @@ fn continuous_radii_go_through_the_lifted_modes() {
     let many: Vec<f64> = (0..90).map(|i| 1.5 + 0.4 * f64::from(i) / 89.0).collect();
     let (a, b) = (cloud(90, 10.0, &many, 5), cloud(40, 6.0, &many, 6));
     for tolerance in [1e-2, 1e-3] {
-        let error = worst::<f64>(&a, &b, tolerance, Quantity::Score);
+        let error = worst(Precision::Double, &a, &b, tolerance, Quantity::Score);
         assert!(error <= tolerance, "at {tolerance:e}: {error:e}");
     }
 }
@@ -242,7 +261,7 @@ fn continuous_radii_go_through_the_lifted_modes() {
 fn grid_equals_the_4d_direct_transform() {
     let (a, b) = (cloud(40, 6.0, &RADII, 7), cloud(20, 4.0, &RADII, 8));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-3)).unwrap());
-    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Double);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let mut work = engine.workspace();
     let rotation = Pose::from_parts([0.9, 0.3, -0.1, 0.4], [0.0; 3]).rotation;
@@ -272,8 +291,8 @@ fn grid_equals_the_4d_direct_transform() {
         }
         spectrum.push((w, sum * multiplicity / plan.modes().volume()));
     });
-    let best = work.grid.iter().copied().fold(0.0, f64::max);
-    for voxel in (0..work.grid.len()).step_by(work.grid.len() / 60) {
+    let best = work.scores.iter().fold(0.0, f64::max);
+    for voxel in (0..work.scores.count()).step_by(work.scores.count() / 60) {
         let t = engine.position(voxel);
         let direct: f64 = spectrum
             .iter()
@@ -282,11 +301,11 @@ fn grid_equals_the_4d_direct_transform() {
                 (value * Complex64::cis(2.0 * PI * turns)).re
             })
             .sum();
-        let error = (direct - work.grid[voxel]).abs() / best;
+        let error = (direct - work.scores.score(voxel)).abs() / best;
         assert!(
             error <= 1e-3,
             "voxel {voxel}: {direct} against {}",
-            work.grid[voxel]
+            work.scores.score(voxel)
         );
     }
 }
@@ -300,31 +319,28 @@ fn grid_equals_the_4d_direct_transform() {
 fn complex_affinity_functions_multiply_to_the_score() {
     let (a, b) = (cloud(8, 4.0, &RADII, 7), cloud(4, 2.5, &RADII, 8));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-3)).unwrap());
-    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Double);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let mut work = engine.workspace();
     let rotation = Pose::from_parts([0.9, 0.3, -0.1, 0.4], [0.0; 3]).rotation;
     engine.correlate(&rotation, &mut work);
 
     let kernel = plan.kernel().options();
-    let skin = DoubleSkin {
-        lambda: kernel.lambda,
-        offset: kernel.offset,
-    };
-    let (receptor, ligand) = (skin.knots(&a), skin.knots(&b));
+    let affinity = |solid| scene::AffinityKnots::of(solid, kernel.lambda, kernel.offset);
+    let (receptor, ligand) = (affinity(&a), affinity(&b));
     let about = |x: &[f64; 3], center: Vector3<f64>| Vector3::from(*x) - center;
     let x: Vec<[f64; 3]> = receptor
-        .centers()
+        .centers
         .iter()
         .map(|x| about(x, plan.receptor_center()).into())
         .collect();
     let y: Vec<[f64; 3]> = ligand
-        .centers()
+        .centers
         .iter()
         .map(|y| (rotation * about(y, plan.ligand_center())).into())
         .collect();
-    let mirrored: Vec<f64> = ligand.radii().iter().map(|s| -s).collect();
-    let conjugated: Vec<Complex64> = ligand.weights().iter().map(|d| d.conj()).collect();
+    let mirrored: Vec<f64> = ligand.radii.iter().map(|s| -s).collect();
+    let conjugated: Vec<Complex64> = ligand.weights.iter().map(|d| d.conj()).collect();
     let modes = plan.axis().modes() as i64;
     let spectrum_with = |weights: &[Complex64]| {
         let mut spectrum = Vec::new();
@@ -334,7 +350,7 @@ fn complex_affinity_functions_multiply_to_the_score() {
             for k in -modes..=modes {
                 let eta = plan.axis().eta(k);
                 sum += plan.axis().coefficient(plan.kernel(), length, k)
-                    * ndft_4d(&x, receptor.radii(), receptor.weights(), w, eta)
+                    * ndft_4d(&x, &receptor.radii, &receptor.weights, w, eta)
                     * ndft_4d(&y, &mirrored, weights, w, eta).conj();
             }
             spectrum.push((w, sum * multiplicity / plan.modes().volume()));
@@ -342,9 +358,9 @@ fn complex_affinity_functions_multiply_to_the_score() {
         spectrum
     };
     // The conjugate of the whole transform conjugates the weights once more.
-    let (product, as_printed) = (spectrum_with(&conjugated), spectrum_with(ligand.weights()));
-    let best = work.grid.iter().copied().fold(0.0, f64::max);
-    for voxel in (0..work.grid.len()).step_by(work.grid.len() / 40) {
+    let (product, as_printed) = (spectrum_with(&conjugated), spectrum_with(&ligand.weights));
+    let best = work.scores.iter().fold(0.0, f64::max);
+    for voxel in (0..work.scores.count()).step_by(work.scores.count() / 40) {
         let t = engine.position(voxel);
         let at = |spectrum: &[([f64; 3], Complex64)]| -> f64 {
             let value = |(w, value): &([f64; 3], Complex64)| {
@@ -353,7 +369,7 @@ fn complex_affinity_functions_multiply_to_the_score() {
             };
             spectrum.iter().map(value).sum()
         };
-        let (score, fast) = (at(&product), work.grid[voxel]);
+        let (score, fast) = (at(&product), work.scores.score(voxel));
         assert!(
             (score - fast).abs() <= 1e-3 * best,
             "voxel {voxel}: {score} against {fast}"
@@ -368,13 +384,13 @@ fn complex_affinity_functions_multiply_to_the_score() {
 fn a_truncated_engine_is_the_one_of_lower_rank() {
     let (a, b) = (cloud(60, 8.0, &RADII, 15), cloud(30, 5.0, &RADII, 16));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
-    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Double);
     let full = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let turned = Pose::from_parts([0.1, 0.6, -0.5, 0.2], [0.0; 3]).rotation;
-    let grid = |engine: &CpuEngine<f64>| {
+    let grid = |engine: &CpuEngine| {
         let mut work = engine.workspace();
         engine.correlate(&turned, &mut work);
-        work.grid
+        work.scores.to_vec()
     };
     let exact = grid(&full);
     assert!(full.rank() > 2);
@@ -405,7 +421,7 @@ fn moved_inputs_keep_their_fast_scores() {
     for x in &mut moved.centers {
         *x = motion.apply(*x);
     }
-    let error = worst::<f64>(&moved, &b, 1e-3, Quantity::Score);
+    let error = worst(Precision::Double, &moved, &b, 1e-3, Quantity::Score);
     assert!(error <= 1e-3, "{error:e}");
 }
 
@@ -415,21 +431,21 @@ fn moved_inputs_keep_their_fast_scores() {
 fn nothing_scores_through_the_periodic_image() {
     let (a, b) = (cloud(80, 8.0, &RADII, 11), cloud(60, 9.0, &RADII, 12));
     let plan = Arc::new(Plan::new(&a, &b, options(1e-2)).unwrap());
-    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Double);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let scorer = ExactScorer::new(plan.kernel(), &a, &b).unwrap();
     let mut work = engine.workspace();
     let rotation = Pose::identity().rotation;
     engine.correlate(&rotation, &mut work);
-    let best = work.grid.iter().copied().fold(0.0, f64::max);
+    let best = work.scores.iter().fold(0.0, f64::max);
     let mut checked = 0;
-    for voxel in 0..work.grid.len() {
+    for voxel in 0..work.scores.count() {
         let t = engine.position(voxel);
         let far =
             (0..3).any(|axis| 0.5 * plan.modes().lengths[axis] - t[axis].abs() < plan.spacing());
         if far && voxel % 7 == 0 {
             let pose = Pose::about(rotation, plan.ligand_center(), plan.receptor_center() + t);
-            let error = (work.grid[voxel] - scorer.score(&pose).score).abs() / best;
+            let error = (work.scores.score(voxel) - scorer.score(&pose).score).abs() / best;
             assert!(error <= 1e-2, "at {t:?}: {error:e}");
             checked += 1;
         }

@@ -6,6 +6,7 @@ mod adapter;
 
 use crate::scene::{Numbers, Pair, RADII, askew_cloud, cloud, engine_options, some_rotation};
 use adapter::adapter;
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::gpu::{GpuDevice, GpuEngine, GpuError, GridPeak, Turn};
 use knotdock_scoring::engine::{EngineOptions, Plan};
 use knotdock_scoring::grid_turn::GridTurn;
@@ -28,10 +29,10 @@ fn rotations(count: usize, seed: u64) -> Vec<UnitQuaternion<f64>> {
 /// Largest difference of the card's grid from the CPU's in f64 over all voxels and turns, as a share of the
 /// largest score there.
 fn difference(gpu: &GpuDevice, a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
-    difference_of(gpu, &Pair::<f64>::new(a, b, options))
+    difference_of(gpu, &Pair::new(Precision::Double, a, b, options))
 }
 
-fn difference_of(gpu: &GpuDevice, pair: &Pair<f64>) -> f64 {
+fn difference_of(gpu: &GpuDevice, pair: &Pair) -> f64 {
     let engine = GpuEngine::new(gpu, &pair.engine, 1, 2, MEMORY).unwrap();
     let mut work = pair.engine.workspace();
     let rotation = some_rotation();
@@ -40,10 +41,10 @@ fn difference_of(gpu: &GpuDevice, pair: &Pair<f64>) -> f64 {
     for &turn in pair.engine.turns() {
         pair.engine.correlate_turned(turn, &mut work);
         let grid = engine.correlate(&rotation, turn).unwrap();
-        assert_eq!(grid.len(), work.grid.len());
-        for (ours, theirs) in grid.iter().zip(&work.grid) {
+        assert_eq!(grid.len(), work.scores.count());
+        for (ours, theirs) in grid.iter().zip(work.scores.iter()) {
             worst = worst.max((f64::from(*ours) - theirs).abs());
-            best = best.max(*theirs);
+            best = best.max(theirs);
         }
     }
     worst / best
@@ -97,7 +98,7 @@ fn the_grid_is_that_of_the_cpu_in_double_precision() {
 fn a_grid_turned_to_fit_the_receptor() {
     let Some(gpu) = adapter() else { return };
     let (a, b) = (askew_cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
-    let pair = Pair::<f64>::fitted(&a, &b, engine_options(1e-2));
+    let pair = Pair::fitted(Precision::Double, &a, &b, engine_options(1e-2));
     assert!(pair.plan.frame().angle() > 0.1);
     let share = difference_of(&gpu, &pair);
     assert!(share < 3e-5, "{share}");
@@ -158,13 +159,13 @@ fn a_single_knot_and_balls_of_many_sizes() {
 /// As [`difference`], of the CPU's own single precision.
 fn single_difference(a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
     let (single, double) = (
-        Pair::<f32>::new(a, b, options).correlate(&some_rotation()),
-        Pair::<f64>::new(a, b, options).correlate(&some_rotation()),
+        Pair::new(Precision::Single, a, b, options).correlate(&some_rotation()),
+        Pair::new(Precision::Double, a, b, options).correlate(&some_rotation()),
     );
-    let best = double.grid.iter().copied().fold(0.0, f64::max);
-    let differences = single.grid.iter().zip(&double.grid);
+    let best = double.scores.iter().fold(0.0, f64::max);
+    let differences = single.scores.iter().zip(double.scores.iter());
     differences
-        .map(|(a, b)| (f64::from(*a) - b).abs() / best)
+        .map(|(a, b)| (a - b).abs() / best)
         .fold(0.0, f64::max)
 }
 
@@ -172,13 +173,15 @@ fn single_difference(a: &Knots, b: &Knots, options: EngineOptions) -> f64 {
 fn peaks_are_those_of_a_sorted_grid() {
     let Some(gpu) = adapter() else { return };
     let (a, b) = (cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
-    let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
+    let pair = Pair::new(Precision::Single, &a, &b, engine_options(1e-2));
     let size = pair.engine.plan().size();
     for (count, reach) in [(1, 2), (5, 2), (40, 1), (3, 0)] {
         let engine = GpuEngine::new(&gpu, &pair.engine, count, reach, MEMORY).unwrap();
         for rotation in rotations(3, 9) {
             let wanted = of_half_turns([true, false, true, true]);
-            let peaks = engine.best(&[Turn { rotation, wanted }], |_| {}).unwrap();
+            let peaks = engine
+                .best(&[Turn { rotation, wanted }], &mut |_| {})
+                .unwrap();
             let mut expected = Vec::new();
             for half_turn in (0..4).filter(|&half_turn| wanted[half_turn]) {
                 let grid = engine
@@ -204,7 +207,7 @@ fn peaks_are_those_of_a_sorted_grid() {
 fn more_peaks_than_a_driver_counts_to_are_right_or_refused() {
     let Some(gpu) = adapter() else { return };
     let (a, b) = (cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
-    let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
+    let pair = Pair::new(Precision::Single, &a, &b, engine_options(1e-2));
     let size = pair.engine.plan().size();
     let engine = GpuEngine::new(&gpu, &pair.engine, 1500, 1, MEMORY).unwrap();
     let turns: Vec<Turn> = rotations(2, 9)
@@ -215,7 +218,7 @@ fn more_peaks_than_a_driver_counts_to_are_right_or_refused() {
         })
         .collect();
     for turn in turns {
-        match engine.best(&[turn], |_| {}) {
+        match engine.best(&[turn], &mut |_| {}) {
             Ok(peaks) => {
                 let grid = engine.correlate(&turn.rotation, GridTurn::NONE).unwrap();
                 let found: Vec<_> = peaks.iter().map(|peak| (peak.voxel, peak.score)).collect();
@@ -231,14 +234,14 @@ fn more_peaks_than_a_driver_counts_to_are_right_or_refused() {
 fn a_grid_gives_no_more_peaks_than_it_has() {
     let Some(gpu) = adapter() else { return };
     let one = cloud(1, 1.0, &[1.7], 5);
-    let pair = Pair::<f32>::new(&one, &one, engine_options(1e-2));
+    let pair = Pair::new(Precision::Single, &one, &one, engine_options(1e-2));
     let longest = pair.engine.plan().size().into_iter().max().unwrap();
     let engine = GpuEngine::new(&gpu, &pair.engine, 50, longest, MEMORY).unwrap();
     let turn = Turn {
         rotation: some_rotation(),
         wanted: of_half_turns([true; 4]),
     };
-    let peaks = engine.best(&[turn], |_| {}).unwrap();
+    let peaks = engine.best(&[turn], &mut |_| {}).unwrap();
     let distinct: std::collections::HashSet<_> =
         peaks.iter().map(|peak| (peak.image, peak.voxel)).collect();
     assert_eq!(distinct.len(), peaks.len());
@@ -251,7 +254,7 @@ fn a_grid_gives_no_more_peaks_than_it_has() {
 fn batches_change_no_bit() {
     let Some(gpu) = adapter() else { return };
     let (a, b) = (cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
-    let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
+    let pair = Pair::new(Precision::Single, &a, &b, engine_options(1e-2));
     let turns: Vec<Turn> = rotations(40, 11)
         .into_iter()
         .enumerate()
@@ -280,7 +283,7 @@ fn batches_change_no_bit() {
         };
         sizes.push(engine.in_flight());
         let mut finished = 0;
-        runs.push(engine.best(&turns, |count| finished += count).unwrap());
+        runs.push(engine.best(&turns, &mut |count| finished += count).unwrap());
         assert_eq!(finished, images);
     }
     println!("images in flight: {sizes:?}");
@@ -293,7 +296,7 @@ fn batches_change_no_bit() {
         assert_eq!(run, &runs[0]);
     }
     let engine = GpuEngine::new(&gpu, &pair.engine, 3, 2, MEMORY).unwrap();
-    assert_eq!(engine.best(&[], |_| {}).unwrap(), []);
+    assert_eq!(engine.best(&[], &mut |_| {}).unwrap(), []);
 }
 
 #[test]
@@ -311,7 +314,7 @@ fn what_cannot_be_had_is_said() {
     let part: String = gpu.name().to_uppercase().chars().take(4).collect();
     assert_eq!(GpuDevice::open(Some(&part)).unwrap().name(), gpu.name());
     let one = cloud(1, 1.0, &[1.7], 5);
-    let pair = Pair::<f32>::new(&one, &one, engine_options(1e-2));
+    let pair = Pair::new(Precision::Single, &one, &one, engine_options(1e-2));
     let Err(error) = GpuEngine::new(&gpu, &pair.engine, 1, 2, 1000) else {
         panic!("a batch in a thousand bytes")
     };

@@ -123,12 +123,6 @@ fn meets_the_direct_sum<T: Real, const D: usize>(
     let norm = exact.iter().map(|v| v.norm_sqr()).sum::<f64>().sqrt();
     let worst = error(&values, &exact) * norm / typical;
     assert!(worst <= allowed, "adjoint: {worst:e} at {about}");
-    let real: Vec<T> = weights.iter().map(|w| T::of(w.re)).collect();
-    plan.forward_real(&sorted, &real, &mut work, &mut output)
-        .unwrap();
-    let real: Vec<Complex64> = weights.iter().map(|w| Complex64::new(w.re, 0.0)).collect();
-    let worst = error(&output, &ndft::forward(&points, &real, plan.modes()));
-    assert!(worst <= tolerance, "real forward: {worst:e} at {about}");
 }
 
 #[test]
@@ -323,21 +317,6 @@ fn direct_sums_of_one_point_are_plane_waves() {
     }
     let values = ndft::adjoint(&[[0.25, 0.5, 0.0]], &modes, [4, 2, 1]);
     assert!((values[0] - 16.0).norm() < 1e-14);
-}
-
-#[test]
-fn real_weights_are_complex_ones_without_imaginary_part() {
-    let plan = Plan::<f64, 3>::new([10, 7, 12], 1e-5, 40).unwrap();
-    let mut random = Random(Numbers(31));
-    let points = plan.locate(&random.points::<3>(40)).unwrap();
-    let real: Vec<f64> = (0..40).map(|_| random.next()).collect();
-    let complex: Vec<Complex64> = real.iter().map(|&w| w.into()).collect();
-    let mut work = plan.workspace();
-    let (mut a, mut b) = (zeros::<f64>(840), zeros::<f64>(840));
-    plan.forward_real(&points, &real, &mut work, &mut a)
-        .unwrap();
-    plan.forward(&points, &complex, &mut work, &mut b).unwrap();
-    assert!(error(&a, &b) < 1e-14);
 }
 
 #[test]

@@ -1,6 +1,7 @@
 //! The potential grid against the sum of the same modes, and its gradient against its own values.
 
 use crate::scene::{Numbers, RADII, askew_cloud, cloud, engine_options};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::{Plan, ReceptorSpectra};
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
@@ -21,7 +22,7 @@ struct Pair {
 impl Pair {
     fn new(a: &Knots, b: &Knots, tolerance: f64) -> Self {
         let plan = Plan::new(a, b, engine_options(tolerance)).unwrap();
-        let spectra = ReceptorSpectra::<f64>::new(&plan, a, b, Quantity::Score);
+        let spectra = ReceptorSpectra::new(&plan, a, b, Quantity::Score, Precision::Double);
         let potentials = PotentialGrid::new(&plan, &spectra, b);
         let all = Selection::all(plan.modes());
         let modes = TruncatedCorrelation::new(&plan, &spectra, b, &all);
@@ -29,8 +30,10 @@ impl Pair {
         let mut largest = 0.0f64;
         for radius in RADII {
             let one = Knots::new(vec![[0.0; 3]], vec![radius]).unwrap();
-            let plan = Plan::with_kernel_of(a, &one, engine_options(tolerance), tolerance).unwrap();
-            let spectra = ReceptorSpectra::<f64>::new(&plan, a, &one, Quantity::Score);
+            let plan =
+                Plan::with_effects(a, &one, engine_options(tolerance), tolerance, Vec::new())
+                    .unwrap();
+            let spectra = ReceptorSpectra::new(&plan, a, &one, Quantity::Score, Precision::Double);
             let grid = PotentialGrid::new(&plan, &spectra, &one);
             for x in &a.centers {
                 let pose = Pose {
@@ -98,7 +101,7 @@ fn a_fitted_grid_has_the_same_potentials() {
     let pair = Pair::new(&a, &b, tolerance);
     let fitted = pair.plan.fitted(&a).unwrap();
     assert!(fitted.frame().angle() > 0.1);
-    let spectra = ReceptorSpectra::<f64>::new(&fitted, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&fitted, &a, &b, Quantity::Score, Precision::Double);
     let potentials = PotentialGrid::new(&fitted, &spectra, &b);
     let mut nonzero = 0;
     for pose in pair.poses(60, 3) {

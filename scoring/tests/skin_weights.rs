@@ -1,6 +1,7 @@
 //! Grown balls with weights of their own: the engine of the product kernel against the sum over all pairs.
 
 use crate::scene::{cloud, engine_options};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::kernel::Band;
@@ -34,13 +35,13 @@ fn the_engine_is_the_pair_sum_of_both_sets_of_weights() {
     let exact = ExactSum::of(&plan, &a, &b).unwrap();
     let quantities = [0, 1, 2].map(Quantity::Slice);
     for quantity in [Quantity::Score].into_iter().chain(quantities) {
-        let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, quantity);
+        let spectra = ReceptorSpectra::new(&plan, &a, &b, quantity, Precision::Double);
         for rank in [spectra.full_rank(), 12] {
             let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, rank);
             let mut work = engine.workspace();
             engine.correlate(&turned().rotation, &mut work);
             let (mut worst, mut largest) = (0.0f64, 0.0f64);
-            for voxel in (0..work.grid.len()).step_by(503) {
+            for voxel in (0..work.scores.count()).step_by(503) {
                 let place = plan.receptor_center() + engine.position(voxel);
                 let pose = Pose::about(turned().rotation, plan.ligand_center(), place);
                 let found = exact.score(&pose);
@@ -48,7 +49,7 @@ fn the_engine_is_the_pair_sum_of_both_sets_of_weights() {
                     Quantity::Slice(slice) => found.slices[slice],
                     _ => found.score,
                 };
-                worst = worst.max((work.grid[voxel] - expected).abs());
+                worst = worst.max((work.scores.score(voxel) - expected).abs());
                 largest = largest.max(expected.abs());
             }
             println!(

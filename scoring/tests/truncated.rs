@@ -3,6 +3,7 @@
 
 use crate::scene;
 use crate::scene::{RADII, engine_options as options};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -27,13 +28,13 @@ struct Pair {
     receptor: Knots,
     ligand: Knots,
     plan: Arc<Plan>,
-    spectra: ReceptorSpectra<f64>,
+    spectra: ReceptorSpectra,
 }
 
 impl Pair {
     fn new(receptor: Knots, ligand: Knots, tolerance: f64, quantity: Quantity) -> Self {
         let plan = Arc::new(Plan::new(&receptor, &ligand, options(tolerance)).unwrap());
-        let spectra = ReceptorSpectra::<f64>::new(&plan, &receptor, &ligand, quantity);
+        let spectra = ReceptorSpectra::new(&plan, &receptor, &ligand, quantity, Precision::Double);
         Self {
             receptor,
             ligand,
@@ -69,7 +70,7 @@ impl Pair {
         )
     }
 
-    fn engine(&self) -> CpuEngine<f64> {
+    fn engine(&self) -> CpuEngine {
         let rank = self.spectra.full_rank();
         CpuEngine::new(Arc::clone(&self.plan), &self.spectra, &self.ligand, rank)
     }
@@ -87,15 +88,15 @@ fn at_voxels_it_is_the_engines_grid() {
     let (mut grid, mut work) = (engine.workspace(), whole.workspace());
     let rotation = turn(0.1);
     engine.correlate(&rotation, &mut grid);
-    let best = grid.grid.iter().copied().fold(0.0, f64::max);
+    let best = grid.scores.iter().fold(0.0, f64::max);
     let prepared = whole.prepare(&rotation, &mut work);
     let mut worst = 0.0f64;
-    for voxel in (0..grid.grid.len()).step_by(grid.grid.len() / 60) {
+    for voxel in (0..grid.scores.count()).step_by(grid.scores.count() / 60) {
         let pose = pair.pose(rotation, engine.position(voxel));
         let (by_translation, _) = prepared.gradient(&pose.translation, &mut work);
         let (by_knots, _) = whole.gradient(&pose, &mut work);
-        worst = worst.max((by_translation - grid.grid[voxel]).abs() / best);
-        worst = worst.max((by_knots - grid.grid[voxel]).abs() / best);
+        worst = worst.max((by_translation - grid.scores.score(voxel)).abs() / best);
+        worst = worst.max((by_knots - grid.scores.score(voxel)).abs() / best);
     }
     println!("worst difference {worst:e} of the best score");
     assert!(worst < 1e-6);
@@ -116,7 +117,7 @@ fn every_knot_its_own_radius() {
     let mut work = whole.workspace();
     let mut grid = engine.workspace();
     engine.correlate(&turn(0.0), &mut grid);
-    let best = grid.grid.iter().copied().fold(0.0, f64::max);
+    let best = grid.scores.iter().fold(0.0, f64::max);
     let prepared = whole.prepare(&turn(0.0), &mut work);
     for i in 0..20 {
         let place = Vector3::new(13.0 - 0.3 * f64::from(i), 0.4 * f64::from(i), -2.0);
@@ -228,7 +229,7 @@ fn the_whole_correlation_truncated_has_the_rms_that_is_stated() {
     let engine = pair.engine();
     let mut full = engine.workspace();
     engine.correlate(&rotation, &mut full);
-    let best = full.grid.iter().copied().fold(0.0, f64::max);
+    let best = full.scores.iter().fold(0.0, f64::max);
     // From many modes to few, since those left out of the spectra spectra do not come back.
     for most in [20_000, 4096, 512, 65] {
         let plan = Arc::clone(&pair.plan);
@@ -238,11 +239,11 @@ fn the_whole_correlation_truncated_has_the_rms_that_is_stated() {
         let mut few = engine.workspace();
         engine.correlate(&rotation, &mut few);
         let errors = full
-            .grid
+            .scores
             .iter()
-            .zip(&few.grid)
+            .zip(few.scores.iter())
             .map(|(a, b)| (a - b).powi(2));
-        let rms = (errors.sum::<f64>() / few.grid.len() as f64).sqrt();
+        let rms = (errors.sum::<f64>() / few.scores.count() as f64).sqrt();
         let stated = rms_left_out(plan.modes(), &selection, &magnitudes);
         println!("{most}: rms {rms:.4e} of {stated:.4e}");
         // The engine transforms to 1e-6 of the best score, which the smallest of these are near.
@@ -251,8 +252,13 @@ fn the_whole_correlation_truncated_has_the_rms_that_is_stated() {
         // Cut to a ball, transforms and all, it is that ball's own low-frequency selection.
         let cut = Arc::new(plan.truncated(most));
         assert!(total(cut.modes()) <= most);
-        let spectra =
-            ReceptorSpectra::<f64>::new(&cut, &pair.receptor, &pair.ligand, Quantity::Score);
+        let spectra = ReceptorSpectra::new(
+            &cut,
+            &pair.receptor,
+            &pair.ligand,
+            Quantity::Score,
+            Precision::Double,
+        );
         let engine = CpuEngine::new(
             Arc::clone(&cut),
             &spectra,
@@ -267,11 +273,11 @@ fn the_whole_correlation_truncated_has_the_rms_that_is_stated() {
             &magnitudes,
         );
         let errors = full
-            .grid
+            .scores
             .iter()
-            .zip(&ball.grid)
+            .zip(ball.scores.iter())
             .map(|(a, b)| (a - b) * (a - b));
-        let rms = (errors.sum::<f64>() / ball.grid.len() as f64).sqrt();
+        let rms = (errors.sum::<f64>() / ball.scores.count() as f64).sqrt();
         assert!((rms - stated).abs() < 1e-4 * stated + 1e-6 * best);
     }
 }

@@ -5,12 +5,11 @@
 
 use crate::scene;
 use crate::scene::{RADII, cloud};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
-use knotdock_scoring::engine::{
-    CpuEngine, EngineOptions, PairKernel, Plan, UniformGrid, UniformGridOptions, UniformGridPlan,
-};
-use knotdock_scoring::kernel::low_pass::smooth_step_down;
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, PairKernel, Plan};
 use knotdock_scoring::kernel::product::{Body, lens_volume};
+use knotdock_scoring::kernel::smooth_step_down;
 use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel, ProductScorer};
 use knotdock_scoring::lifted_axis::RadiusBasis;
 use knotdock_scoring::quantity::Quantity;
@@ -22,6 +21,11 @@ use nalgebra::Vector3;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 use std::sync::Arc;
+
+#[path = "scene/uniform_grid.rs"]
+#[allow(dead_code, reason = "the bench uses the rest")]
+mod baseline;
+use baseline::{UniformGrid, UniformGridOptions, UniformGridPlan};
 
 fn kernel_options(alpha: f64) -> KernelOptions {
     KernelOptions {
@@ -102,7 +106,8 @@ fn uniform<T: Real>(
     )
 }
 
-fn lifted<T: Real>(
+fn lifted(
+    precision: Precision,
     a: &Knots,
     b: &Knots,
     options: EngineOptions,
@@ -114,12 +119,13 @@ fn lifted<T: Real>(
         unreachable!("a product plan has a product kernel");
     };
     let scorer = ProductScorer::new(kernel, a, b).unwrap();
-    let spectra = ReceptorSpectra::<T>::new(&plan, a, b, quantity);
+    let spectra = ReceptorSpectra::new(&plan, a, b, quantity, precision);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
     let position = |voxel| engine.position(voxel);
-    errors(&work.grid, position, &scorer, (a, b), quantity).1
+    let scores: Vec<f64> = work.scores.to_vec();
+    errors(&scores, position, &scorer, (a, b), quantity).1
 }
 
 /// Smooth bumps: the sum over voxels errs by the bumps' spectrum at 1 / h, which falls like exp(-sqrt(r / h)): faster
@@ -203,16 +209,30 @@ fn the_lifted_engine_meets_its_tolerance_with_the_product_kernel() {
     for band in [Band::Whole, Band::LowPass] {
         for tolerance in [1e-2, 1e-3, 1e-4] {
             let options = engine_options(None, tolerance);
-            let error = lifted::<f64>(&a, &b, options, band, Quantity::Score);
+            let error = lifted(Precision::Double, &a, &b, options, band, Quantity::Score);
             println!("{band:?} f64 {tolerance:e}: {error:.2e}");
             assert!(error <= tolerance);
         }
-        let error = lifted::<f32>(&a, &b, engine_options(None, 1e-3), band, Quantity::Score);
+        let error = lifted(
+            Precision::Single,
+            &a,
+            &b,
+            engine_options(None, 1e-3),
+            band,
+            Quantity::Score,
+        );
         println!("{band:?} f32 1e-3: {error:.2e}");
         assert!(error <= 1e-3);
         for slice in 0..3 {
             let options = engine_options(None, 1e-3);
-            let error = lifted::<f64>(&a, &b, options, band, Quantity::Slice(slice));
+            let error = lifted(
+                Precision::Double,
+                &a,
+                &b,
+                options,
+                band,
+                Quantity::Slice(slice),
+            );
             assert!(error <= 1e-3, "{band:?} slice {slice}: {error:e}");
         }
     }
@@ -227,7 +247,14 @@ fn many_radii_go_through_chebyshev_nodes() {
     let plan = Plan::product(&a, &b, options, Band::LowPass).unwrap();
     assert!(matches!(plan.basis(), RadiusBasis::Nodes { .. }));
     println!("{:?}, error {:.1e}", plan.basis(), plan.axis_error());
-    let error = lifted::<f64>(&a, &b, options, Band::LowPass, Quantity::Score);
+    let error = lifted(
+        Precision::Double,
+        &a,
+        &b,
+        options,
+        Band::LowPass,
+        Quantity::Score,
+    );
     assert!(error <= 1e-3, "{error:e}");
 }
 
@@ -352,7 +379,7 @@ fn modes_equal_the_direct_transforms() {
     let mut grid_work = grid.workspace();
     grid.correlate(&turned().rotation, &mut grid_work);
     let plan = Arc::new(Plan::product(&a, &b, engine_options(None, 1e-4), Band::LowPass).unwrap());
-    let spectra = ReceptorSpectra::<f64>::new(&plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&plan, &a, &b, Quantity::Score, Precision::Double);
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&turned().rotation, &mut work);
@@ -387,8 +414,9 @@ fn modes_equal_the_direct_transforms() {
         assert!((own - three).norm() < 2e-2 * scale);
         let w = at(plan.modes().lengths);
         let (three, _) = direct(w);
+        let scores: Vec<f64> = work.scores.to_vec();
         let own = mode(
-            &work.grid,
+            &scores,
             plan.modes().volume(),
             &|voxel| engine.position(voxel),
             w,

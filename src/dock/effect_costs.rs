@@ -11,10 +11,9 @@ use crate::dock::plan::DockPlan;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra, choose_rank};
 use knotdock_scoring::terms::effect::Effect;
-use knotdock_scoring::transform::Real;
 
 /// The engine of the lowest rank that the plan's tolerance allows.
-pub(super) fn rank_of<T: Real>(plan: &DockPlan, spectra: &ReceptorSpectra<T>) -> ChosenRank<T> {
+pub(super) fn rank_of(plan: &DockPlan, spectra: &ReceptorSpectra) -> ChosenRank {
     let SearchPlan {
         engine, rotations, ..
     } = &plan.search;
@@ -22,8 +21,8 @@ pub(super) fn rank_of<T: Real>(plan: &DockPlan, spectra: &ReceptorSpectra<T>) ->
 }
 
 /// Components of an engine by effect (`Effect as usize`), which add up to its rank.
-pub(super) fn components_by_effect<T: Real>(
-    spectra: &ReceptorSpectra<T>,
+pub(super) fn components_by_effect(
+    spectra: &ReceptorSpectra,
     shares: &[f64],
 ) -> [f64; Effect::ALL.len()] {
     let mut components = [0.0; Effect::ALL.len()];

@@ -5,7 +5,7 @@ use crate::dock::outcome::{DockOutcome, MeasuredError, SharpOutcome, error_scale
 use crate::dock::plan::DockPlan;
 use crate::dock::stopwatch::Stopwatch;
 use crate::error::no_pose;
-use crate::options::{Precision, Stopped};
+use crate::options::Stopped;
 use crate::pose_space::refine::{AscentLimits, RefinedPose, printed};
 use crate::pose_space::rotations::RotationGroup;
 use crate::progress::Progress;
@@ -29,7 +29,6 @@ use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Rescorer;
-use knotdock_scoring::transform::Real;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
@@ -73,14 +72,13 @@ pub fn dock_until(
     deadline: Option<&Deadline>,
     progress: &dyn Progress,
 ) -> Result<DockOutcome, Error> {
-    threads::on(plan.in_flight(), || match plan.options.search.precision {
-        Precision::Single => dock_in::<f32>(plan, points, deadline, progress),
-        Precision::Double => dock_in::<f64>(plan, points, deadline, progress),
+    threads::on(plan.in_flight(), || {
+        dock_on_threads(plan, points, deadline, progress)
     })?
 }
 
-/// The run, with the fast path in a floating-point type.
-fn dock_in<T: Real>(
+/// The run on the threads of the current pool.
+fn dock_on_threads(
     plan: &DockPlan,
     points: &[[f64; 3]],
     deadline: Option<&Deadline>,
@@ -93,7 +91,7 @@ fn dock_in<T: Real>(
         scorer,
         rank_error,
         components,
-    } = Prepared::<T>::new(plan, progress)?;
+    } = Prepared::new(plan, progress)?;
     clock.lap("prepare");
     let mut found = find(plan, &engine, deadline, (progress, &mut clock))?;
     let grid_pose = |peak| engine.grid_pose(&plan.search, peak);
@@ -181,10 +179,10 @@ fn dock_in<T: Real>(
 }
 
 /// Prepared engine, spectra and scorer of a run.
-struct Prepared<T: Real> {
+struct Prepared {
     /// The receptor's spectra, where poses are refined.
-    spectra: Option<ReceptorSpectra<T>>,
-    engine: ScanEngine<T>,
+    spectra: Option<ReceptorSpectra>,
+    engine: ScanEngine,
     scorer: ExactSum,
     /// Error of the compressed components at the probe rotations, relative to their best score.
     rank_error: f64,
@@ -192,12 +190,18 @@ struct Prepared<T: Real> {
     components: [f64; Effect::ALL.len()],
 }
 
-impl<T: Real> Prepared<T> {
+impl Prepared {
     /// Transforms the receptor and chooses the rank.
     fn new(plan: &DockPlan, progress: &dyn Progress) -> Result<Self, Error> {
         progress.stage("prepare", 1);
         let engine = &plan.search.engine;
-        let spectra = ReceptorSpectra::new(engine, &plan.receptor, &plan.ligand, Quantity::Score);
+        let spectra = ReceptorSpectra::new(
+            engine,
+            &plan.receptor,
+            &plan.ligand,
+            Quantity::Score,
+            plan.options.search.precision.into(),
+        );
         let ChosenRank {
             engine,
             error: rank_error,
@@ -241,9 +245,9 @@ impl Found {
 }
 
 /// Searches the rotations, then the finer ones if the plan has any.
-fn find<T: Real>(
+fn find(
     plan: &DockPlan,
-    engine: &ScanEngine<T>,
+    engine: &ScanEngine,
     deadline: Option<&Deadline>,
     (progress, clock): (&dyn Progress, &mut Stopwatch),
 ) -> Result<Found, Error> {
@@ -289,9 +293,9 @@ fn find<T: Real>(
 
 /// Refines the best grid poses, of rings all. Poses are rounded to their printed digits before they are scored, so that
 /// the table's rows give back the same scores.
-fn refine<T: Real>(
+fn refine(
     plan: &DockPlan,
-    spectra: Option<ReceptorSpectra<T>>,
+    spectra: Option<ReceptorSpectra>,
     (peaks, grid_poses): (&[Peak], &[Pose]),
     body: &RigidBody,
     progress: &dyn Progress,

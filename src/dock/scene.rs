@@ -214,7 +214,7 @@ impl Scene {
         self.plan_of(options.kernel.engine(), options.kernel.tolerance)
     }
 
-    /// The plan for an engine's options, with the kernel of a tolerance: see [`Plan::with_kernel_of`]. Of the product
+    /// The plan for an engine's options, with the kernel of a tolerance: see [`Plan::with_effects`]. Of the product
     /// kernel volumes are in offsets cubed, and the offset of the engine is the depth of the skin.
     ///
     /// # Errors

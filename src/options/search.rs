@@ -72,6 +72,15 @@ pub enum Precision {
     Double,
 }
 
+impl From<Precision> for knotdock_scoring::Precision {
+    fn from(precision: Precision) -> Self {
+        match precision {
+            Precision::Single => Self::Single,
+            Precision::Double => Self::Double,
+        }
+    }
+}
+
 impl Precision {
     /// Finest tolerance that it can reach.
     pub fn finest_tolerance(self) -> f64 {

@@ -2,7 +2,7 @@
 
 use std::path::Path;
 
-use knotdock_scoring::terms::effect::contact::{Potential, PotentialError};
+use knotdock_scoring::terms::effect::contact::Potential;
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_structures::Error;
 
@@ -104,11 +104,7 @@ fn atom_pair(path: &Path) -> Result<AtomPairPotential, Error> {
 }
 
 /// The table in a file; `script` writes such tables.
-fn table<P>(
-    path: &Path,
-    script: &str,
-    parse: fn(&str) -> Result<P, PotentialError>,
-) -> Result<P, Error> {
+fn table<P>(path: &Path, script: &str, parse: fn(&str) -> Result<P, Error>) -> Result<P, Error> {
     let refused = |error: Error| {
         let remedy = format!("give a table as scripts/{script} writes it, or leave the option out");
         error.at(path).help(remedy)
@@ -117,7 +113,7 @@ fn table<P>(
         let message = format!("the table of energies cannot be read: {error}");
         refused(Error::input(message))
     })?;
-    parse(&text).map_err(|error| refused(Error::input(&error).on_line(error.line as u64)))
+    parse(&text).map_err(refused)
 }
 
 #[cfg(test)]

@@ -21,7 +21,6 @@ use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::so3::{covering_radius, rotation_set, set_name, spiral_set};
 use knotdock_scoring::symmetry::{RingAxis, Symmetry};
-use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 use refine::{AscentLimits, RefinedPose, printed};
@@ -137,7 +136,7 @@ impl PoseSpace {
     }
 
     /// The filter of the voxels that count; `None` where all do.
-    pub(crate) fn voxel_filter<T: Real>(&self, engine: &CpuEngine<T>) -> Option<VoxelFilter> {
+    pub(crate) fn voxel_filter(&self, engine: &CpuEngine) -> Option<VoxelFilter> {
         match self {
             Self::Free => None,
             _ => Some(VoxelFilter::new(engine, self.axis().copied())),

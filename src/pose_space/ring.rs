@@ -80,6 +80,7 @@ mod tests {
     use crate::progress::NoProgress;
     use crate::search::scan::scan;
     use crate::search::scan_engine::ScanEngine;
+    use knotdock_scoring::Precision;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra, choose_rank};
     use knotdock_scoring::quantity::Quantity;
     use knotdock_structures::Knots;
@@ -100,7 +101,8 @@ mod tests {
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9, 1.7]).unwrap();
         let engine = DockOptions::default().kernel.engine();
         let plan = Plan::new(&knots, &knots, engine).unwrap();
-        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let spectra =
+            ReceptorSpectra::new(&plan, &knots, &knots, Quantity::Score, Precision::Double);
         let field = PotentialGrid::new(&plan, &spectra, &knots);
         let scorer = ExactSum::of(&plan, &knots, &knots).unwrap();
         let exact = |symmetry: Symmetry, pose: &Pose| {
@@ -185,11 +187,12 @@ mod tests {
         });
         let plan = plan(&ring, &ring, &options).unwrap();
         let space = plan.search.space;
-        let spectra = ReceptorSpectra::<f32>::new(
+        let spectra = ReceptorSpectra::new(
             &plan.search.engine,
             &plan.receptor,
             &plan.ligand,
             Quantity::Score,
+            Precision::Single,
         );
         let search = &plan.search;
         let chosen = choose_rank(

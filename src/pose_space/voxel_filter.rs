@@ -4,8 +4,8 @@
 //! or line runs through it; refinement then moves its pose onto the ring.
 
 use knotdock_scoring::engine::CpuEngine;
+use knotdock_scoring::peaks::ScoreGrid;
 use knotdock_scoring::symmetry::RingAxis;
-use knotdock_scoring::transform::Real;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 
 /// Voxels of a grid whose poses form rings.
@@ -31,7 +31,7 @@ struct Layer {
 
 impl VoxelFilter {
     /// The filter for the grids of an engine; `across` is the ring's own axis, of Dn.
-    pub fn new<T: Real>(engine: &CpuEngine<T>, across: Option<RingAxis>) -> Self {
+    pub fn new(engine: &CpuEngine, across: Option<RingAxis>) -> Self {
         let plan = engine.plan();
         assert_eq!(
             plan.frame(),
@@ -71,45 +71,33 @@ impl VoxelFilter {
         }
     }
 
-    /// Sets voxels whose poses form no ring to minus infinity, and updates each row's largest value.
+    /// Takes voxels whose poses form no ring out of a grid.
     ///
-    /// Voxels stay where the plane runs through them on which poses do not slide along the rotation's axis. For Dn the
+    /// Voxels stay if the plane runs through them on which poses do not slide along the rotation's axis. For Dn the
     /// plane on which that axis crosses the ring's own must run through them, too.
-    pub fn keep<T: Real>(
-        &self,
-        rotation: &UnitQuaternion<f64>,
-        grid: &mut [T],
-        row_best: &mut [T],
-    ) {
+    pub fn restrict(&self, rotation: &UnitQuaternion<f64>, scores: &mut ScoreGrid) {
         let [along_x, along_y, along_z] = &self.places;
         let slide = self.layer(rotation, Unit::new_normalize(rotation.imag()), 0.0);
         let sideways = self.across.map(|across| {
             let (normal, shift) = across.sideways(rotation);
             self.layer(rotation, normal, shift)
         });
-        let rows = grid.chunks_exact_mut(along_z.len()).zip(row_best);
-        for (index, (row, best)) in rows.enumerate() {
-            let (x, y) = (
-                along_x[index / along_y.len()],
-                along_y[index % along_y.len()],
-            );
-            slide.keep(x, y, along_z, row);
+        scores.restrict(&mut |row, open| {
+            let (x, y) = (along_x[row / along_y.len()], along_y[row % along_y.len()]);
+            slide.keep(x, y, along_z, open);
             if let Some(sideways) = &sideways {
-                sideways.keep(x, y, along_z, row);
+                sideways.keep(x, y, along_z, open);
             }
-            *best = row.iter().copied().fold(T::neg_infinity(), T::max);
-        }
+        });
     }
 }
 
 impl Layer {
-    /// Keeps the voxels of a row that the plane runs through.
-    fn keep<T: Real>(&self, x: f64, y: f64, along_z: &[f64], row: &mut [T]) {
+    /// Clears the marks of a row's voxels that the plane does not run through.
+    fn keep(&self, x: f64, y: f64, along_z: &[f64], open: &mut [bool]) {
         let from = self.start + self.normal.x * x + self.normal.y * y;
-        for (value, z) in row.iter_mut().zip(along_z) {
-            if (from + self.normal.z * z).abs() > self.reach {
-                *value = T::neg_infinity();
-            }
+        for (open, z) in open.iter_mut().zip(along_z) {
+            *open &= (from + self.normal.z * z).abs() <= self.reach;
         }
     }
 }
@@ -119,6 +107,7 @@ mod tests {
     use super::*;
     use crate::options::DockOptions;
     use crate::pose_space::axes::axis_set;
+    use knotdock_scoring::Precision;
     use knotdock_scoring::engine::{Plan, ReceptorSpectra};
     use knotdock_scoring::quantity::Quantity;
     use knotdock_scoring::se3::Pose;
@@ -134,19 +123,20 @@ mod tests {
         let knots = Knots::new(centers, vec![1.7, 1.8, 1.9]).unwrap();
         let plan =
             Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
-        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let spectra =
+            ReceptorSpectra::new(&plan, &knots, &knots, Quantity::Score, Precision::Double);
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &knots, spectra.full_rank());
         let voxels = VoxelFilter::new(&engine, None);
         let [nx, ny, nz] = plan.size();
         let symmetry: Symmetry = "C3".parse().unwrap();
         for axis in &axis_set(7) {
             let rotation = symmetry.rotation(axis);
-            let value = |voxel: usize| (voxel * 7919 % 1009) as f64;
-            let mut grid: Vec<f64> = (0..nx * ny * nz).map(value).collect();
-            let mut rows = vec![f64::INFINITY; nx * ny];
-            voxels.keep(&rotation, &mut grid, &mut rows);
+            let value = |voxel: usize| (voxel * 7919 % 1009) as f32;
+            let grid = (0..nx * ny * nz).map(value).collect();
+            let mut grid = ScoreGrid::of_scores(plan.size(), grid);
+            voxels.restrict(&rotation, &mut grid);
             let mut kept = 0;
-            for (voxel, &left) in grid.iter().enumerate() {
+            for (voxel, left) in grid.iter().enumerate() {
                 let slide = |corner: [f64; 3]| {
                     let place = plan.receptor_center()
                         + engine.position(voxel)
@@ -159,7 +149,7 @@ mod tests {
                 let slides = corners.as_flattened().as_flattened();
                 let through = slides.iter().any(|&s| s > -1e-9) && slides.iter().any(|&s| s < 1e-9);
                 let expected = if through {
-                    value(voxel)
+                    f64::from(value(voxel))
                 } else {
                     f64::NEG_INFINITY
                 };
@@ -168,9 +158,6 @@ mod tests {
             }
             // The plane is a layer or so of the box.
             assert!(kept >= nx.min(ny).min(nz).pow(2) && kept < 3 * nx * ny.max(nz));
-            for (row, best) in grid.chunks_exact(nz).zip(&rows) {
-                assert_eq!(*best, row.iter().copied().fold(f64::NEG_INFINITY, f64::max));
-            }
         }
     }
 
@@ -187,17 +174,17 @@ mod tests {
         let knots = Knots::new(copies.concat(), vec![1.7; 6]).unwrap();
         let plan =
             Arc::new(Plan::new(&knots, &knots, DockOptions::default().kernel.engine()).unwrap());
-        let spectra = ReceptorSpectra::<f64>::new(&plan, &knots, &knots, Quantity::Score);
+        let spectra =
+            ReceptorSpectra::new(&plan, &knots, &knots, Quantity::Score, Precision::Double);
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &knots, spectra.full_rank());
         let [nx, ny, nz] = plan.size();
         let symmetry: Symmetry = "D2".parse().unwrap();
         for across in axis.across(5) {
             let rotation = symmetry.rotation(&across);
             let keep = |crossing| {
-                let mut grid = vec![1.0; nx * ny * nz];
-                let mut rows = vec![0.0; nx * ny];
-                VoxelFilter::new(&engine, crossing).keep(&rotation, &mut grid, &mut rows);
-                grid.iter().map(|value| *value == 1.0).collect::<Vec<_>>()
+                let mut grid = ScoreGrid::of_scores(plan.size(), vec![1.0; nx * ny * nz]);
+                VoxelFilter::new(&engine, crossing).restrict(&rotation, &mut grid);
+                grid.iter().map(|value| value == 1.0).collect::<Vec<_>>()
             };
             let (line, layer) = (keep(Some(axis)), keep(None));
             let mut heights = Vec::new();

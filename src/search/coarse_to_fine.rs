@@ -12,7 +12,6 @@ use crate::search::plan::SearchPlan;
 use crate::search::scan::scan;
 use crate::search::scan_engine::ScanEngine;
 use knotdock_scoring::peaks::{NEIGHBOURS, Peak};
-use knotdock_scoring::transform::Real;
 use knotdock_structures::Error;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
@@ -32,9 +31,9 @@ pub struct FineSearched {
 ///
 /// # Errors
 /// As [`scan`].
-pub(crate) fn search_finer<T: Real>(
+pub(crate) fn search_finer(
     plan: &SearchPlan,
-    engine: &ScanEngine<T>,
+    engine: &ScanEngine,
     coarse: Vec<Peak>,
     progress: &dyn Progress,
 ) -> Result<(Vec<Peak>, FineSearched), Error> {

@@ -11,8 +11,7 @@ use crate::search::scan_engine::no_graphics;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
 use knotdock_scoring::grid_turn::GridTurn;
-use knotdock_scoring::peaks::{Peak, find_peaks, find_peaks_among};
-use knotdock_scoring::transform::Real;
+use knotdock_scoring::peaks::{Peak, PeakLimits};
 use knotdock_structures::Error;
 use rayon::prelude::*;
 use std::sync::atomic::{AtomicUsize, Ordering};
@@ -32,10 +31,10 @@ pub(crate) struct Scanned {
 /// The best `most` peaks over the rotations given: over the first of them, where a deadline comes before the last.
 ///
 /// # Errors
-/// [`Error`] where the graphics processor fails, [`Error`] where `progress` ends the run.
-pub(crate) fn scan<T: Real>(
+/// [`Error`] if the graphics processor fails, and if `progress` ends the run.
+pub(crate) fn scan(
     plan: &SearchPlan,
-    engine: &ScanEngine<T>,
+    engine: &ScanEngine,
     groups: &[RotationGroup],
     most: usize,
     deadline: Option<&Deadline>,
@@ -92,7 +91,7 @@ fn scan_on_card(
             wanted: group.wanted,
         };
         let turns: Vec<Turn> = groups.iter().map(turn).collect();
-        let found = gpu.best(&turns, |images| progress.advance(images as u64));
+        let found = gpu.best(&turns, &mut |images| progress.advance(images as u64));
         let found = found.map_err(no_graphics)?;
         peaks.extend(found.into_iter().map(|peak| Peak {
             score: f64::from(peak.score),
@@ -110,9 +109,9 @@ fn scan_on_card(
 
 /// Peaks of the CPU's cores that score `least` or more, the best `most` of each thread among them. The groups that are searched are the first
 /// ones, at least one, whatever the threads: each takes the next one and searches it to its end.
-fn scan_on_cores<T: Real>(
+fn scan_on_cores(
     plan: &SearchPlan,
-    engine: &ScanEngine<T>,
+    engine: &ScanEngine,
     groups: &[RotationGroup],
     (most, least): (usize, f64),
     deadline: Option<&Deadline>,
@@ -164,23 +163,22 @@ fn scan_on_cores<T: Real>(
                 if count > 0 {
                     engine.transform_ligand(&rotation, &mut work);
                 }
-                engine.correlate_each(&turns[..count], &mut work, |place, work| {
+                engine.correlate_each(&turns[..count], &mut work, &mut |place, scores| {
                     if let Some(filter) = &filter {
-                        filter.keep(&rotation, &mut work.grid, &mut work.row_best);
+                        filter.restrict(&rotation, scores);
                     }
-                    let size = plan.engine.size();
                     let rotation = (group.first + images[place]) as u32;
-                    let limits = (plan.per_rotation, floor);
+                    let limits = PeakLimits {
+                        count: plan.per_rotation,
+                        floor,
+                    };
                     if restrained.is_some() {
                         let region = &mut regions[place];
-                        region.take_cells_out(&mut work.grid, &mut work.row_best);
-                        let values = (&mut work.grid[..], &mut work.row_best[..]);
-                        let check =
-                            |row, values: &mut [T]| region.take_voxels_out(row, floor, values);
-                        find_peaks_among(size, values, rotation, limits, &mut found, check);
+                        region.restrict(scores);
+                        let check = &mut |row, open: &mut [bool]| region.check(row, open);
+                        scores.find_peaks_among(rotation, limits, &mut found, check);
                     } else {
-                        let values = (&mut work.grid[..], &mut work.row_best[..]);
-                        find_peaks(size, values, rotation, limits, &mut found);
+                        scores.find_peaks(rotation, limits, &mut found);
                     }
                     if found.len() >= 2 * most {
                         found.sort_unstable_by(Peak::order);

@@ -5,7 +5,6 @@ use crate::search::plan::SearchPlan;
 use knotdock_scoring::engine::CpuEngine;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::transform::Real;
 use knotdock_structures::Error;
 use serde::Serialize;
 
@@ -43,9 +42,9 @@ pub fn name_runtime_folder() {
 }
 
 /// An engine that is ready to scan.
-pub(crate) struct ScanEngine<T: Real> {
+pub(crate) struct ScanEngine {
     /// Maps voxels to places, and scans where there is nothing else to.
-    pub cpu: CpuEngine<T>,
+    pub cpu: CpuEngine,
     #[cfg(feature = "gpu")]
     pub gpu: Option<GpuEngine>,
     /// The graphics processor in use.
@@ -54,7 +53,7 @@ pub(crate) struct ScanEngine<T: Real> {
     pub in_flight: usize,
 }
 
-impl<T: Real> ScanEngine<T> {
+impl ScanEngine {
     /// The pose of a peak, as the grid has it.
     pub fn grid_pose(&self, plan: &SearchPlan, peak: &Peak) -> Pose {
         let (rotation, half_turn) = plan.rotations.rotation(peak.rotation as usize);
@@ -72,12 +71,12 @@ pub(super) fn no_graphics(error: impl std::fmt::Display) -> Error {
 }
 
 #[cfg(feature = "gpu")]
-impl<T: Real> ScanEngine<T> {
+impl ScanEngine {
     /// Takes an engine to where the plan wants it.
     ///
     /// # Errors
-    /// [`Error`] where there is no graphics processor, or it cannot be used.
-    pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, Error> {
+    /// [`Error`] if there is no graphics processor, or it cannot be used.
+    pub fn new(plan: &SearchPlan, cpu: CpuEngine) -> Result<Self, Error> {
         if plan.device == EngineChoice::Cpu {
             return Ok(Self {
                 cpu,
@@ -112,12 +111,12 @@ impl<T: Real> ScanEngine<T> {
 }
 
 #[cfg(not(feature = "gpu"))]
-impl<T: Real> ScanEngine<T> {
+impl ScanEngine {
     /// The engine as it is.
     ///
     /// # Errors
-    /// [`Error`] where a graphics processor is wanted, for this build has none.
-    pub fn new(plan: &SearchPlan, cpu: CpuEngine<T>) -> Result<Self, Error> {
+    /// [`Error`] for a graphics processor, which this build cannot use.
+    pub fn new(plan: &SearchPlan, cpu: CpuEngine) -> Result<Self, Error> {
         match plan.device {
             EngineChoice::Cpu => Ok(Self {
                 cpu,

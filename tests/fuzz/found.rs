@@ -11,7 +11,7 @@ fn rows_after_a_table_are_refused() {
     assert!(Potential::parse(coarse).is_ok());
     let again = coarse.lines().next_back().unwrap();
     let refused = Potential::parse(&format!("{coarse}{again}\n")).unwrap_err();
-    assert_eq!(refused.line, coarse.lines().count() + 1);
+    assert_eq!(refused.line(), Some(coarse.lines().count() as u64 + 1));
     let fine = include_str!("../../scoring/src/terms/pose/fine_contact_potential.csv");
     assert!(DistanceBinnedPotential::parse(fine).is_ok());
     let again = fine.lines().next_back().unwrap();

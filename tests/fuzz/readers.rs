@@ -7,7 +7,7 @@ use std::path::Path;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock_cli::records::recorded_run::RecordedRun;
 use knotdock_cli::tables::pair_table::read_pairs;
-use knotdock_scoring::terms::effect::contact::{Potential, PotentialError, TYPES};
+use knotdock_scoring::terms::effect::contact::{Potential, TYPES};
 use knotdock_scoring::terms::pose::{AtomPairPotential, DistanceBinnedPotential};
 use knotdock_structures::ball_union::union_volume;
 use knotdock_structures::mesh::{MeshFormat, parse};
@@ -141,7 +141,10 @@ fn replace(path: &Path, bytes: &[u8]) {
 }
 
 /// Reads tables of energies, which must be finite and symmetric.
-fn table(bytes: &[u8], parse: fn(&str) -> Result<Vec<Potential>, PotentialError>) -> bool {
+fn table(
+    bytes: &[u8],
+    parse: fn(&str) -> Result<Vec<Potential>, knotdock_structures::Error>,
+) -> bool {
     let Ok(text) = str::from_utf8(bytes) else {
         return false;
     };
@@ -181,9 +184,9 @@ fn pair_table(bytes: &[u8]) -> bool {
     }
 }
 
-fn refused(text: &str, error: &PotentialError) -> bool {
-    assert!((1..=text.lines().count().max(1)).contains(&error.line));
-    assert!(!error.message.is_empty());
+fn refused(text: &str, error: &knotdock_structures::Error) -> bool {
+    assert!((1..=text.lines().count().max(1)).contains(&(error.line().unwrap_or(0) as usize)));
+    assert!(!error.message().is_empty());
     false
 }
 

@@ -7,6 +7,7 @@
 //! - scoring/tests/identities.rs checks what holds for the pair sum alone (r0 = 0, a split knot, doubled lengths).
 
 use crate::scene::{Pair, RADII, cloud, engine_options, kernel_for, kernel_options, some_rotation};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::grid_turn::GridTurn;
@@ -18,12 +19,12 @@ use knotdock_structures::Knots;
 use nalgebra::Vector3;
 
 /// The grid of one quantity in f64.
-fn grid(pair: &Pair<f64>, a: &Knots, b: &Knots, quantity: Quantity) -> Vec<f64> {
-    let spectra = ReceptorSpectra::<f64>::new(&pair.plan, a, b, quantity);
+fn grid(pair: &Pair, a: &Knots, b: &Knots, quantity: Quantity) -> Vec<f64> {
+    let spectra = ReceptorSpectra::new(&pair.plan, a, b, quantity, Precision::Double);
     let engine = CpuEngine::new(pair.plan.clone(), &spectra, b, spectra.full_rank());
     let mut work = engine.workspace();
     engine.correlate(&some_rotation(), &mut work);
-    work.grid
+    work.scores.to_vec()
 }
 
 fn largest(grid: &[f64]) -> f64 {
@@ -42,7 +43,7 @@ fn the_grid_of_the_score_is_the_weighted_sum_of_the_slices() {
             offset,
             ..options.kernel
         };
-        let pair = Pair::<f64>::new(&a, &b, options);
+        let pair = Pair::new(Precision::Double, &a, &b, options);
         let score = grid(&pair, &a, &b, Quantity::Score);
         let slices = [0, 1, 2].map(|slice| grid(&pair, &a, &b, Quantity::Slice(slice)));
         let [w0, w1, w2] = options.kernel.slice_weights();
@@ -113,7 +114,7 @@ fn without_a_preference_for_contact_the_score_is_a_second_derivative() {
 #[test]
 fn the_grids_mean_is_the_same_for_all_rotations() {
     let (a, b) = (cloud(80, 9.0, &RADII, 5), cloud(40, 6.0, &RADII, 6));
-    let pair = Pair::<f64>::new(&a, &b, engine_options(1e-3));
+    let pair = Pair::new(Precision::Double, &a, &b, engine_options(1e-3));
     let kernel = pair.plan.kernel();
     let weights = kernel.options().slice_weights();
     let (mut expected, mut size) = (0.0, 0.0);
@@ -134,7 +135,7 @@ fn the_grids_mean_is_the_same_for_all_rotations() {
         pair.engine.transform_ligand(&rotation, &mut work);
         for half_turn in GridTurn::HALF_TURNS {
             pair.engine.correlate_turned(half_turn, &mut work);
-            let mean = work.grid.iter().sum::<f64>() / work.grid.len() as f64;
+            let mean = work.scores.iter().sum::<f64>() / work.scores.count() as f64;
             // The spreading window is good to the plan's tolerance; its own error turns with the knots.
             let share = (mean - expected / volume).abs() / (size / volume);
             assert!(share < 1e-5, "turn {turn}, {half_turn:?}: {share:e}");
@@ -163,14 +164,14 @@ fn volume(kernel: &knotdock_scoring::kernel::RankingKernel, sigma: f64) -> f64 {
 fn as_many_components_as_distinct_radii_are_exact() {
     let many: Vec<f64> = (0..80).map(|i| 1.4 + f64::from(i) / 130.0).collect();
     let (a, b) = (cloud(80, 9.0, &many, 7), cloud(45, 6.0, &RADII, 8));
-    let pair = Pair::<f64>::new(&a, &b, engine_options(1e-2));
+    let pair = Pair::new(Precision::Double, &a, &b, engine_options(1e-2));
     assert_eq!(*pair.plan.basis(), RadiusBasis::Modes);
-    let spectra = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
+    let spectra = ReceptorSpectra::new(&pair.plan, &a, &b, Quantity::Score, Precision::Double);
     let at = |rank: usize| {
         let engine = CpuEngine::new(pair.plan.clone(), &spectra, &b, rank);
         let mut work = engine.workspace();
         engine.correlate(&some_rotation(), &mut work);
-        work.grid
+        work.scores.to_vec()
     };
     let whole = at(spectra.full_rank());
     let off = |grid: &[f64]| {

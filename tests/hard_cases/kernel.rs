@@ -8,6 +8,7 @@
 
 use crate::scene::{Pair, RADII, cloud, engine_options, kernel_options, some_rotation};
 use knotdock_scoring::Correlator;
+use knotdock_scoring::Precision;
 use knotdock_scoring::kernel::KernelError;
 use knotdock_scoring::kernel::{Bump, KernelOptions, RankingKernel, Trim};
 
@@ -234,7 +235,8 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
                 ..options.kernel
             };
             if lambda == 1.0 {
-                let correlator = Correlator::<f64>::with_terms(&a, &b, options, Vec::new());
+                let correlator =
+                    Correlator::with_terms(&a, &b, &options, Precision::Double, Vec::new());
                 let error = correlator.map(|correlator| correlator.error());
                 println!("{lambda} {offset} {alpha}: {error:?}");
                 assert!(
@@ -243,9 +245,9 @@ fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
                 );
                 continue;
             }
-            let pair = Pair::<f64>::new(&a, &b, options);
+            let pair = Pair::new(Precision::Double, &a, &b, options);
             let (error, best) = pair.error(some_rotation(), 97, 100);
-            let grid = pair.correlate(&some_rotation()).grid;
+            let grid = pair.correlate(&some_rotation()).scores.to_vec();
             let largest = grid.iter().fold(0.0f64, |a, b| a.max(b.abs()));
             let has_reward = lambda > 0.0 && offset > 1e-6;
             let scale = if has_reward { best } else { largest };

@@ -4,9 +4,8 @@
 use crate::scene::{
     Pair, RADII, cloud, engine_options, kernel_for, kernel_options, knots, some_rotation,
 };
-use knotdock_scoring::engine::{
-    EngineOptions, Plan, PlanError, UniformGridOptions, UniformGridPlan,
-};
+use knotdock_scoring::Precision;
+use knotdock_scoring::engine::{EngineOptions, Plan, PlanError};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{Band, KernelOptions, ProductKernel, ProductScorer, RankingKernel};
 use knotdock_scoring::se3::Pose;
@@ -36,14 +35,14 @@ fn coincident_knots_are_one_knot_many_times() {
         knots(vec![[0.5; 3]; 70], &[1.5]),
     );
     let other = knots(vec![[0.5; 3]], &[1.5]);
-    let single = Pair::<f32>::new(&one, &other, engine_options(1e-2));
-    let crowd = Pair::<f32>::new(&many, &more, engine_options(1e-2));
+    let single = Pair::new(Precision::Single, &one, &other, engine_options(1e-2));
+    let crowd = Pair::new(Precision::Single, &many, &more, engine_options(1e-2));
     let (a, b) = (
-        single.correlate(&some_rotation()).grid,
-        crowd.correlate(&some_rotation()).grid,
+        single.correlate(&some_rotation()).scores.to_vec(),
+        crowd.correlate(&some_rotation()).scores.to_vec(),
     );
     assert_eq!(single.plan.size(), crowd.plan.size());
-    let best = a.iter().copied().fold(0.0, f32::max);
+    let best = a.iter().copied().fold(0.0, f64::max);
     for (voxel, (one, all)) in a.iter().zip(&b).enumerate() {
         // Sums of 21,000 equal terms in f32.
         assert!(
@@ -77,9 +76,10 @@ fn duplicate_atoms_are_weights() {
     weights.radii.push(1.7);
     weights.weights.push(0.0);
     let grid = |receptor: &Knots, ligand: &Knots| {
-        Pair::<f64>::new(receptor, ligand, engine_options(1e-3))
+        Pair::new(Precision::Double, receptor, ligand, engine_options(1e-3))
             .correlate(&some_rotation())
-            .grid
+            .scores
+            .to_vec()
     };
     for (first, second) in [
         (grid(&duplicated, &b), grid(&weights, &b)),
@@ -102,10 +102,10 @@ fn one_knot_against_a_hundred_thousand() {
         cloud(100_000, 30.0, &RADII, 3),
     );
     for (a, b) in [(&crowd, &one), (&one, &crowd)] {
-        let pair = Pair::<f32>::new(a, b, engine_options(1e-2));
+        let pair = Pair::new(Precision::Single, a, b, engine_options(1e-2));
         let (error, best) = pair.error(some_rotation(), 499, 100);
-        let grid = pair.correlate(&some_rotation()).grid;
-        let largest = f64::from(grid.iter().fold(0.0f32, |a, b| a.max(b.abs())));
+        let grid = pair.correlate(&some_rotation()).scores.to_vec();
+        let largest = grid.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         println!("error {error:.2e}, best {best:.2e}, largest {largest:.2e}");
         assert!(error <= 1e-2 * best, "{error:e} of {best:e}");
     }
@@ -179,14 +179,6 @@ fn engines_name_the_balls_that_they_cannot_resolve() {
     // Resolution is what the balls are measured by: at a tenth of it these are seen, at ten times none is.
     assert_eq!(named(&mixed, 0.4), [0, 4, 8]);
     assert_eq!(named(&protein, 45.0).len(), protein.len());
-    let grid = UniformGridOptions {
-        kernel: kernel_options(),
-        band: Band::Whole,
-        spacing: 1.0,
-        tolerance: 1e-2,
-    };
-    let plan = UniformGridPlan::new(&mixed, &protein, grid).unwrap();
-    assert_eq!(plan.unresolved(&mixed), [0, 3, 4, 7, 8, 11]);
     let spaced = EngineOptions {
         spacing: Some(1.0),
         ..engine_options(1e-2)
@@ -210,12 +202,14 @@ fn a_million_angstrom_away_the_grid_has_the_same_bits() {
     };
     let (a, b) = (cloud(80, 9.0, &RADII, 8), cloud(40, 6.0, &RADII, 9));
     let far = f64::from(1 << 20);
-    let near = Pair::<f32>::new(
+    let near = Pair::new(
+        Precision::Single,
         &dyadic(&a, [0.0; 3]),
         &dyadic(&b, [0.0; 3]),
         engine_options(1e-2),
     );
-    let away = Pair::<f32>::new(
+    let away = Pair::new(
+        Precision::Single,
         &dyadic(&a, [far, -far, 0.0]),
         &dyadic(&b, [-far, 0.5 * far, far]),
         engine_options(1e-2),
@@ -224,11 +218,10 @@ fn a_million_angstrom_away_the_grid_has_the_same_bits() {
         near.correlate(&some_rotation()),
         away.correlate(&some_rotation()),
     );
-    let bits = |grid: &[f32]| grid.iter().map(|x| x.to_bits()).collect::<Vec<u32>>();
-    assert_eq!(bits(&first.grid), bits(&second.grid));
+    assert_eq!(first.scores, second.scores);
     // A pose's translation of 1e6 Å is good to 1e-10 Å.
-    let best = f64::from(first.grid.iter().copied().fold(0.0, f32::max));
-    for voxel in (0..first.grid.len()).step_by(97) {
+    let best = first.scores.iter().fold(0.0, f64::max);
+    for voxel in (0..first.scores.count()).step_by(97) {
         let (x, y) = (
             near.exact(some_rotation(), voxel),
             away.exact(some_rotation(), voxel),
@@ -242,7 +235,7 @@ fn a_million_angstrom_away_the_grid_has_the_same_bits() {
 fn a_ligand_larger_than_its_receptor() {
     let (small, large) = (cloud(12, 3.0, &RADII, 10), cloud(900, 22.0, &RADII, 11));
     for tolerance in [1e-2, 1e-3] {
-        let pair = Pair::<f64>::new(&small, &large, engine_options(tolerance));
+        let pair = Pair::new(Precision::Double, &small, &large, engine_options(tolerance));
         let (error, best) = pair.error(some_rotation(), 199, 100);
         println!("{tolerance:e}: {:.2e}", error / best);
         assert!(error <= tolerance * best, "{error:e} of {best:e}");
@@ -314,8 +307,8 @@ fn denormal_numbers_stay_finite() {
             engine.kernel.offset = offset;
             match Plan::new(a, b, engine) {
                 Ok(_) => {
-                    let pair = Pair::<f32>::new(a, b, engine);
-                    let grid = pair.correlate(&some_rotation()).grid;
+                    let pair = Pair::new(Precision::Single, a, b, engine);
+                    let grid = pair.correlate(&some_rotation()).scores.to_vec();
                     assert!(
                         grid.iter().all(|value| value.is_finite()),
                         "scene {index}, offset {offset}"
@@ -337,8 +330,13 @@ fn denormal_numbers_stay_finite() {
 fn weights_scale_the_score_or_are_refused() {
     let (a, b) = (cloud(60, 8.0, &RADII, 13), cloud(30, 5.0, &RADII, 14));
     let grid = |x: f64, y: f64| {
-        let pair = Pair::<f32>::new(&weighted(&a, x), &weighted(&b, y), engine_options(1e-2));
-        pair.correlate(&some_rotation()).grid
+        let pair = Pair::new(
+            Precision::Single,
+            &weighted(&a, x),
+            &weighted(&b, y),
+            engine_options(1e-2),
+        );
+        pair.correlate(&some_rotation()).scores.to_vec()
     };
     let plain = grid(1.0, 1.0);
     for (x, y) in [
@@ -347,7 +345,7 @@ fn weights_scale_the_score_or_are_refused() {
         (-1.0, 0.25),
     ] {
         let scaled = grid(x, y);
-        let factor = (x * y) as f32;
+        let factor = x * y;
         assert!(
             plain.iter().zip(&scaled).all(|(a, b)| a * factor == *b),
             "{x:e} {y:e}"
@@ -391,12 +389,6 @@ fn knots_that_are_none_are_refused_everywhere() {
     ];
     let kernel = kernel_for(kernel_options(), &good, &good);
     let product = ProductKernel::new(kernel_options(), Band::Whole, 1.9, 1.0).unwrap();
-    let grid = UniformGridOptions {
-        kernel: kernel_options(),
-        band: Band::Whole,
-        spacing: 1.0,
-        tolerance: 1e-2,
-    };
     for (index, knots) in bad.iter().enumerate() {
         for (a, b) in [(knots, &good), (&good, knots)] {
             let reported = match Plan::new(a, b, engine_options(1e-2)) {
@@ -407,10 +399,6 @@ fn knots_that_are_none_are_refused_everywhere() {
                 reported.contains("knot 3") || index == 0 || index == 7,
                 "{reported}"
             );
-            assert!(matches!(
-                UniformGridPlan::new(a, b, grid),
-                Err(PlanError::Knots(_))
-            ));
             assert!(ExactScorer::new(&kernel, a, b).is_err());
             assert!(ProductScorer::new(&product, a, b).is_err());
         }

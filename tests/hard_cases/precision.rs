@@ -2,6 +2,7 @@
 //! pairs, and the same bits at twice the size.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, some_rotation};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::kernel::KernelOptions;
@@ -25,22 +26,22 @@ struct Losses {
 /// Poses are voxels at several rotations. Exact scores are taken of the 1,500 best fast ones. The others lie so far
 /// below that only an error of several times the measured size could bring one of them up (asserted).
 fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
-    let pair = Pair::<f32>::new(a, b, engine_options(tolerance));
-    let spectra = ReceptorSpectra::<f32>::new(&pair.plan, a, b, Quantity::Score);
+    let pair = Pair::new(Precision::Single, a, b, engine_options(tolerance));
+    let spectra = ReceptorSpectra::new(&pair.plan, a, b, Quantity::Score, Precision::Single);
     let rank = rank.unwrap_or(spectra.full_rank());
     let engine = CpuEngine::new(pair.plan.clone(), &spectra, b, rank);
     let mut work = engine.workspace();
-    let mut fast: Vec<(f32, usize, usize)> = Vec::new();
+    let mut fast: Vec<(f64, usize, usize)> = Vec::new();
     let rotations: Vec<_> = (0..4)
         .map(|k| Pose::from_parts([0.2 * f64::from(k), 0.5, -0.3, 0.7], [0.0; 3]).rotation)
         .collect();
     for (turn, rotation) in rotations.iter().enumerate() {
         engine.correlate(rotation, &mut work);
         fast.extend(
-            work.grid
+            work.scores
                 .iter()
                 .enumerate()
-                .map(|(voxel, &score)| (score, turn, voxel)),
+                .map(|(voxel, score)| (score, turn, voxel)),
         );
     }
     fast.sort_by(|x, y| y.0.total_cmp(&x.0));
@@ -53,9 +54,9 @@ fn losses(a: &Knots, b: &Knots, tolerance: f64, rank: Option<usize>) -> Losses {
     let (best, last) = (exact[0].0, exact[99].0);
     let error = exact[..100]
         .iter()
-        .map(|&(score, place)| (score - f64::from(fast[place].0)).abs() / best)
+        .map(|&(score, place)| (score - fast[place].0).abs() / best)
         .fold(0.0, f64::max);
-    assert!(last - f64::from(fast[1500].0) > 3.0 * error * best);
+    assert!(last - fast[1500].0 > 3.0 * error * best);
     let gone = exact[..100].iter().filter(|(_, place)| *place >= 100);
     Losses {
         error,
@@ -106,17 +107,17 @@ fn an_f32_search_loses_only_poses_at_the_edge_of_the_hundred() {
 fn single_precision_is_far_below_the_tolerance() {
     let (a, b) = (cloud(300, 14.0, &RADII, 31), cloud(90, 9.0, &RADII, 32));
     for tolerance in [1e-2, 1e-3, 1e-4] {
-        let single =
-            Pair::<f32>::new(&a, &b, engine_options(tolerance)).correlate(&some_rotation());
-        let double =
-            Pair::<f64>::new(&a, &b, engine_options(tolerance)).correlate(&some_rotation());
-        let best = double.grid.iter().copied().fold(0.0, f64::max);
-        let largest = double.grid.iter().fold(0.0f64, |a, b| a.max(b.abs()));
+        let single = Pair::new(Precision::Single, &a, &b, engine_options(tolerance))
+            .correlate(&some_rotation());
+        let double = Pair::new(Precision::Double, &a, &b, engine_options(tolerance))
+            .correlate(&some_rotation());
+        let best = double.scores.iter().fold(0.0, f64::max);
+        let largest = double.scores.iter().fold(0.0f64, |a, b| a.max(b.abs()));
         let off = single
-            .grid
+            .scores
             .iter()
-            .zip(&double.grid)
-            .map(|(x, y)| (f64::from(*x) - y).abs())
+            .zip(double.scores.iter())
+            .map(|(x, y)| (x - y).abs())
             .fold(0.0, f64::max);
         println!(
             "{tolerance:e}: {:.1e} of the largest, {:.1e} of the best",
@@ -139,14 +140,14 @@ fn peaks_of_a_symmetric_receptor_are_tied() {
     let radii = [&half.radii[..], &half.radii[..]].concat();
     let a = Knots::new(centers, radii).unwrap();
     let b = cloud(40, 6.0, &RADII, 42);
-    let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
-    let spectra = ReceptorSpectra::<f32>::new(&pair.plan, &a, &b, Quantity::Score);
+    let pair = Pair::new(Precision::Single, &a, &b, engine_options(1e-2));
+    let spectra = ReceptorSpectra::new(&pair.plan, &a, &b, Quantity::Score, Precision::Single);
     let field = PotentialGrid::new(&pair.plan, &spectra, &b);
     let work = pair.correlate(&some_rotation());
-    let best = f64::from(work.grid.iter().copied().fold(0.0, f32::max));
+    let best = work.scores.iter().fold(0.0, f64::max);
     let (mut peaks, mut worst) = (0, 0.0f64);
-    for (voxel, &score) in work.grid.iter().enumerate() {
-        if f64::from(score) < 0.4 * best {
+    for (voxel, score) in work.scores.iter().enumerate() {
+        if score < 0.4 * best {
             continue;
         }
         peaks += 1;
@@ -188,8 +189,8 @@ fn doubling_every_length_keeps_the_grids_bits() {
             pass_length: 2.0 * options.kernel.pass_length,
             ..options.kernel
         };
-        let small = Pair::<f32>::new(&a, &b, options);
-        let large = Pair::<f32>::new(&doubled(&a), &doubled(&b), twice);
+        let small = Pair::new(Precision::Single, &a, &b, options);
+        let large = Pair::new(Precision::Single, &doubled(&a), &doubled(&b), twice);
         let lengths = |plan: &Plan| {
             (
                 plan.spacing(),
@@ -199,9 +200,9 @@ fn doubling_every_length_keeps_the_grids_bits() {
         };
         let (one, two) = (lengths(&small.plan), lengths(&large.plan));
         assert_eq!((2.0 * one.0, 2.0 * one.1, 2.0 * one.2), two);
-        let bits = |pair: &Pair<f32>| -> Vec<u32> {
+        let bits = |pair: &Pair| -> Vec<u64> {
             let work = pair.correlate(&some_rotation());
-            work.grid.iter().map(|x| x.to_bits()).collect()
+            work.scores.iter().map(|x| x.to_bits()).collect()
         };
         assert_eq!(bits(&small), bits(&large));
     }

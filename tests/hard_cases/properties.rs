@@ -6,6 +6,7 @@
 //! - The fast path is within its tolerance of the pair sum.
 
 use crate::scene::{Pair, engine_options};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::{EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, RankingKernel};
@@ -128,7 +129,7 @@ proptest! {
     fn the_fast_path_is_finite_and_symmetric(a in knots(), b in knots(), options in options(), place in pose()) {
         let summed = |a: &Knots, b: &Knots, pose: &Pose| {
             let plan = Arc::new(Plan::new(a, b, options).unwrap());
-            let spectra = ReceptorSpectra::<f64>::new(&plan, a, b, Quantity::Score);
+            let spectra = ReceptorSpectra::new(&plan, a, b, Quantity::Score, Precision::Double);
             let whole = TruncatedCorrelation::new(&plan, &spectra, b, &Selection::all(plan.modes()));
             let (value, gradient) = whole.gradient(pose, &mut whole.workspace());
             assert!(gradient.force.iter().chain(&gradient.torque).all(|x| x.is_finite()));
@@ -150,12 +151,12 @@ proptest! {
         a in knots(), b in knots(), options in options(), place in pose()
     ) {
         let options = EngineOptions { tolerance: 1e-2, ..options };
-        let pair = Pair::<f32>::new(&a, &b, options);
+        let pair = Pair::new(Precision::Single, &a, &b, options);
         let rotation = Pose::from_parts(place.0, [0.0; 3]).rotation;
         let work = pair.correlate(&rotation);
         let half = pair.plan.modes().lengths.map(|length| 0.5 * length);
         let bound = 1e-2 * best(&pair.plan, &a, &b);
-        for (voxel, &value) in work.grid.iter().enumerate() {
+        for (voxel, value) in work.scores.iter().enumerate() {
             prop_assert!(value.is_finite());
             let t = pair.engine.position(voxel);
             if voxel % 5 == 0 && (0..3).any(|axis| half[axis] - t[axis].abs() < pair.plan.spacing()) {

@@ -6,8 +6,8 @@
 //! are drawn.
 
 use crate::scene::{Numbers, Pair, engine_options, some_rotation};
+use knotdock_scoring::Precision;
 use knotdock_scoring::quantity::Quantity;
-use knotdock_scoring::transform::Real;
 use knotdock_scoring::transform::ndft::ndft_4d;
 use knotdock_scoring::transform::real_fft_3d::RealFft3d;
 use knotdock_structures::Knots;
@@ -40,15 +40,10 @@ struct Errors {
     pose: f64,
 }
 
-fn errors<T: Real>(a: &Knots, b: &Knots, tolerance: f64) -> Errors {
-    let pair = Pair::<T>::new(a, b, engine_options(tolerance));
+fn errors(precision: Precision, a: &Knots, b: &Knots, tolerance: f64) -> Errors {
+    let pair = Pair::new(precision, a, b, engine_options(tolerance));
     let rotation = some_rotation();
-    let mut grid: Vec<f64> = pair
-        .correlate(&rotation)
-        .grid
-        .iter()
-        .map(|value| value.wide())
-        .collect();
+    let mut grid = pair.correlate(&rotation).scores.to_vec();
     let (pose, best) = worst_pose(&pair, &grid, rotation);
 
     let plan = &pair.plan;
@@ -86,7 +81,7 @@ fn errors<T: Real>(a: &Knots, b: &Knots, tolerance: f64) -> Errors {
 
 /// Largest error over the hundred best voxels and a hundred spread over all ranks, as a share of the best exact
 /// score, and that score.
-fn worst_pose<T: Real>(pair: &Pair<T>, grid: &[f64], rotation: UnitQuaternion<f64>) -> (f64, f64) {
+fn worst_pose(pair: &Pair, grid: &[f64], rotation: UnitQuaternion<f64>) -> (f64, f64) {
     let mut order: Vec<usize> = (0..grid.len()).collect();
     order.sort_by(|&x, &y| grid[y].total_cmp(&grid[x]));
     let sweep = order.iter().step_by(order.len() / (POSES / 2));
@@ -112,7 +107,7 @@ struct Wave {
 }
 
 /// Modes drawn evenly from all that the plan keeps.
-fn drawn_modes<T: Real>(pair: &Pair<T>) -> Vec<[Wave; 3]> {
+fn drawn_modes(pair: &Pair) -> Vec<[Wave; 3]> {
     let modes = pair.plan.modes();
     let mut all = Vec::with_capacity(modes.count);
     modes.for_each(|_, w, _| all.push(w));
@@ -131,8 +126,8 @@ fn drawn_modes<T: Real>(pair: &Pair<T>) -> Vec<[Wave; 3]> {
 ///
 /// Knots of one radius have the same phase along eta, so their sum over x is taken once. At some modes that is
 /// compared with the plain 4D sum.
-fn direct<T: Real>(
-    pair: &Pair<T>,
+fn direct(
+    pair: &Pair,
     a: &Knots,
     b: &Knots,
     rotation: UnitQuaternion<f64>,
@@ -236,9 +231,17 @@ fn proteins_meet_the_tolerance_mode_by_mode_and_pose_by_pose() {
         );
     };
     for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
-        check("f64", tolerance, errors::<f64>(&a, &b, tolerance));
+        check(
+            "f64",
+            tolerance,
+            errors(Precision::Double, &a, &b, tolerance),
+        );
     }
     for tolerance in [1e-2, 1e-3, 1e-4] {
-        check("f32", tolerance, errors::<f32>(&a, &b, tolerance));
+        check(
+            "f32",
+            tolerance,
+            errors(Precision::Single, &a, &b, tolerance),
+        );
     }
 }

@@ -7,6 +7,7 @@
 #![allow(clippy::excessive_precision, clippy::approx_constant)]
 
 use crate::scene::{Pair, RADII, cloud, engine_options, some_rotation};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::kernel::product::lens_volume;
 use knotdock_scoring::kernel::radial_transform::RadialTransform;
@@ -107,12 +108,13 @@ fn two_sharp_balls_cut_in_frequency_tend_to_their_lens() {
             ..engine_options(1e-4)
         };
         let plan = Arc::new(Plan::product(&one, &other, options, Band::Whole).unwrap());
-        let spectra = ReceptorSpectra::<f64>::new(&plan, &one, &other, Quantity::Slice(0));
+        let spectra =
+            ReceptorSpectra::new(&plan, &one, &other, Quantity::Slice(0), Precision::Double);
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &other, 1);
         let mut work = engine.workspace();
         engine.correlate(&Pose::identity().rotation, &mut work);
         let mut worst = 0.0f64;
-        for (voxel, value) in work.grid.iter().enumerate() {
+        for (voxel, value) in work.scores.iter().enumerate() {
             let exact = lens_volume(1.9, 1.5, engine.position(voxel).norm());
             worst = worst.max((value - exact).abs());
         }
@@ -139,9 +141,9 @@ fn nothing_to_transform_scores_nothing() {
     let cancelling = weighted(&cancelling, &|i| if i % 2 == 0 { 1.0 } else { -1.0 });
     for ligand in [nothing, cancelling] {
         for (receptor, ligand) in [(&a, &ligand), (&ligand, &a)] {
-            let pair = Pair::<f32>::new(receptor, ligand, engine_options(1e-2));
+            let pair = Pair::new(Precision::Single, receptor, ligand, engine_options(1e-2));
             let work = pair.correlate(&some_rotation());
-            assert!(work.grid.iter().all(|value| value.abs() < 1e-4));
+            assert!(work.scores.iter().all(|value| value.abs() < 1e-4));
             assert_eq!(pair.scorer.score_only(&Pose::identity()).abs(), 0.0);
         }
     }

@@ -6,6 +6,7 @@
 //! plates, whose knots all lie at the same distance.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, knots, some_rotation};
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::quantity::Quantity;
@@ -31,10 +32,10 @@ fn lattice(counts: [usize; 3]) -> Knots {
 
 /// Worst |fast - exact| relative to the best exact score seen. It is over all voxels of the outermost layer on
 /// `axis`, where ligand, receptor and image are closest to each other, and over every 31st voxel of the rest.
-fn worst(pair: &Pair<f32>, rotation: UnitQuaternion<f64>) -> (f64, f64) {
+fn worst(pair: &Pair, rotation: UnitQuaternion<f64>) -> (f64, f64) {
     let work = pair.correlate(&rotation);
     let half = pair.plan.modes().lengths.map(|length| 0.5 * length);
-    let errors: Vec<(bool, f64, f64)> = (0..work.grid.len())
+    let errors: Vec<(bool, f64, f64)> = (0..work.scores.count())
         .into_par_iter()
         .filter_map(|voxel| {
             let t = pair.engine.position(voxel);
@@ -43,12 +44,12 @@ fn worst(pair: &Pair<f32>, rotation: UnitQuaternion<f64>) -> (f64, f64) {
                 return None;
             }
             let exact = pair.exact(rotation, voxel);
-            Some((face, (f64::from(work.grid[voxel]) - exact).abs(), exact))
+            Some((face, (work.scores.score(voxel) - exact).abs(), exact))
         })
         .collect();
-    let (most, best) = (0..work.grid.len())
-        .map(|voxel| (work.grid[voxel], voxel))
-        .fold((f32::NEG_INFINITY, 0), |a, b| if b.0 > a.0 { b } else { a });
+    let (most, best) = (0..work.scores.count())
+        .map(|voxel| (work.scores.score(voxel), voxel))
+        .fold((f64::NEG_INFINITY, 0), |a, b| if b.0 > a.0 { b } else { a });
     assert!(most > 0.0);
     let best = pair.exact(rotation, best);
     let share = |face: bool| {
@@ -87,7 +88,7 @@ fn a_ligand_between_receptor_and_image_scores_with_neither() {
         ),
         ("small in large", lattice([7, 7, 7]), lattice([1, 1, 1])),
     ] {
-        let pair = Pair::<f32>::new(&receptor, &ligand, engine_options(1e-2));
+        let pair = Pair::new(Precision::Single, &receptor, &ligand, engine_options(1e-2));
         for turn in turns {
             let (face, inside) = worst(&pair, turn);
             println!("{name}: {face:.2e} at the faces, {inside:.2e} elsewhere");
@@ -104,19 +105,19 @@ fn a_ligand_between_receptor_and_image_scores_with_neither() {
 #[test]
 fn the_field_ends_with_the_box() {
     let (a, b) = (cloud(120, 10.0, &RADII, 3), cloud(50, 7.0, &RADII, 4));
-    let pair = Pair::<f32>::new(&a, &b, engine_options(1e-2));
-    let spectra = ReceptorSpectra::<f32>::new(&pair.plan, &a, &b, Quantity::Score);
+    let pair = Pair::new(Precision::Single, &a, &b, engine_options(1e-2));
+    let spectra = ReceptorSpectra::new(&pair.plan, &a, &b, Quantity::Score, Precision::Single);
     let field = PotentialGrid::new(&pair.plan, &spectra, &b);
     let rotation = UnitQuaternion::identity();
     let work = pair.correlate(&rotation);
     let (best, score) = work
-        .grid
+        .scores
         .iter()
         .enumerate()
-        .fold((0, 0.0f32), |a, b| if *b.1 > a.1 { (b.0, *b.1) } else { a });
+        .fold((0, 0.0f64), |a, b| if b.1 > a.1 { b } else { a });
     let pose = pair.pose(rotation, best);
     let here = field.gradient(&pose).0;
-    assert!((here - f64::from(score)).abs() < 1e-2 * here);
+    assert!((here - score).abs() < 1e-2 * here);
     for axis in 0..3 {
         for boxes in [-2.0, -1.0, 1.0, 2.0] {
             let mut step = Vector3::zeros();
@@ -151,13 +152,13 @@ fn a_wide_ligand_fits_into_a_box_of_coarse_cells() {
         options.spacing = spacing;
         options.kernel.lambda = lambda;
         options.kernel.offset = offset;
-        let pair = Pair::<f64>::new(&a, &b, options);
-        let spectra = ReceptorSpectra::<f64>::new(&pair.plan, &a, &b, Quantity::Score);
+        let pair = Pair::new(Precision::Double, &a, &b, options);
+        let spectra = ReceptorSpectra::new(&pair.plan, &a, &b, Quantity::Score, Precision::Double);
         let direct =
             TruncatedCorrelation::new(&pair.plan, &spectra, &b, &Selection::all(pair.plan.modes()));
         let mut work = direct.workspace();
         let rotation = some_rotation();
-        let grid = pair.correlate(&rotation).grid;
+        let grid = pair.correlate(&rotation).scores.to_vec();
         let largest = grid.iter().fold(1e-9f64, |a, b| a.max(b.abs()));
         for voxel in (0..grid.len()).step_by(grid.len() / 150) {
             let (value, _) = direct.gradient(&pair.pose(rotation, voxel), &mut work);

@@ -11,7 +11,7 @@ use knotdock::options::{DockOptions, SampleGrid, SampleWeights};
 use knotdock_scoring::engine::Plan;
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::RankingKernel;
-use knotdock_scoring::kernel::low_pass::smooth_step_down;
+use knotdock_scoring::kernel::smooth_step_down;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::numeric::Bump;
 use nalgebra::{UnitQuaternion, Vector3};

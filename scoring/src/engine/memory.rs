@@ -1,10 +1,10 @@
 //! Memory of an engine's parts in bytes, from its plan: known before any of them is made.
 
-use super::cpu::{COLUMNS, PLANES, SIDE, TOGETHER};
+use super::cpu::{COLUMNS, PLANES, SIDE, TOGETHER, ligand_forward};
 use super::packed::{LANES, Packing};
 use super::plan::Plan;
-use super::preparation::ligand_forward;
 use super::receptor_spectra::LigandFunctions;
+use crate::precision::Precision;
 use crate::terms::effect::{ActiveTerm, Effect, Term};
 use crate::transform::Real;
 use knotdock_structures::Knots;
@@ -45,8 +45,15 @@ pub struct EffectSize {
 }
 
 impl EngineMemory {
-    /// The memory of a plan's engine in a floating-point type.
-    pub fn new<T: Real>(plan: &Plan, ligand: &Knots) -> Self {
+    /// The memory of a plan's engine.
+    pub fn new(plan: &Plan, ligand: &Knots, precision: Precision) -> Self {
+        match precision {
+            Precision::Single => Self::of::<f32>(plan, ligand),
+            Precision::Double => Self::of::<f64>(plan, ligand),
+        }
+    }
+
+    fn of<T: Real>(plan: &Plan, ligand: &Knots) -> Self {
         let real = size_of::<T>() as u64;
         let modes = plan.modes().count as u64;
         let voxels = plan.modes().size.iter().product::<usize>() as u64;

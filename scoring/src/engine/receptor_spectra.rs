@@ -2,6 +2,7 @@
 
 use super::plan::Plan;
 use crate::kernel::table::Table;
+use crate::precision::{InPrecision, Precision, in_precision, of_precision};
 use crate::quantity::Quantity;
 use crate::terms::effect::{ActiveTerm, Effect, Label, Term};
 use crate::transform::Real;
@@ -10,26 +11,29 @@ use crate::transform::pruned_type1::{Forward, ForwardWorkspace};
 use crate::transform::truncation::Selection;
 use knotdock_structures::Knots;
 use nalgebra::{DMatrix, SymmetricEigen, Vector3};
-use num_complex::Complex;
+use num_complex::{Complex, Complex64};
 use rayon::prelude::*;
 use std::sync::Arc;
+
+/// Spectra by function, shared with copies that leave an effect out.
+pub(super) type SpectrumList<T> = Vec<Arc<Vec<Complex<T>>>>;
 
 /// The receptor's side, uncompressed: `H[function][mode]`, and the values of the functions at the ligand's knots.
 ///
 /// The first functions are those of the lifted axis; each further effect adds one for every class that the ligand has.
 #[derive(Clone)]
-pub struct ReceptorSpectra<T> {
-    /// Shared with copies that leave an effect out.
-    pub(super) spectra: Vec<Arc<Vec<Complex<T>>>>,
+pub struct ReceptorSpectra {
+    /// Window and volume are not yet divided out on the ligand's side.
+    pub(super) spectra: InPrecision<SpectrumList<f32>, SpectrumList<f64>>,
     /// d_j v_b(s_j): (knots, functions).
-    pub(super) ligand: DMatrix<f64>,
+    ligand: DMatrix<f64>,
     pub(super) center: [f64; 3],
     /// The effect of each function.
     effects: Vec<Effect>,
 }
 
 /// The factorisation of the functions, at full rank.
-pub struct Factors {
+pub(crate) struct Factors {
     /// The receptor's combination: (functions, q).
     pub combination: DMatrix<f64>,
     /// The ligand's coefficients: (knots, q).
@@ -38,14 +42,34 @@ pub struct Factors {
     pub singular: Vec<f64>,
 }
 
-impl<T: Real> ReceptorSpectra<T> {
+impl ReceptorSpectra {
     /// Transforms the receptor and multiplies by the lifted kernel.
     ///
     /// The plan's further terms belong to the score alone, not to slices and sensitivities.
     ///
     /// # Panics
     /// Where the plan was made for other knots.
-    pub fn new(plan: &Plan, receptor: &Knots, ligand: &Knots, fold: Quantity) -> Self {
+    pub fn new(
+        plan: &Plan,
+        receptor: &Knots,
+        ligand: &Knots,
+        fold: Quantity,
+        precision: Precision,
+    ) -> Self {
+        let bodies = [receptor, ligand];
+        match precision {
+            Precision::Single => Self::of(plan, bodies, fold, InPrecision::Single),
+            Precision::Double => Self::of(plan, bodies, fold, InPrecision::Double),
+        }
+    }
+
+    /// The spectra in a floating-point type, which `wrap` makes those of its precision.
+    fn of<T: Real>(
+        plan: &Plan,
+        [receptor, ligand]: [&Knots; 2],
+        fold: Quantity,
+        wrap: fn(SpectrumList<T>) -> InPrecision<SpectrumList<f32>, SpectrumList<f64>>,
+    ) -> Self {
         assert!(plan.holds_ligand(ligand), "the plan is of another ligand");
         let knots = Receptor::<T>::new(plan, receptor);
         let mut spectra = knots.shape_functions(plan, receptor, fold);
@@ -69,7 +93,7 @@ impl<T: Real> ReceptorSpectra<T> {
         let scale = knots.forward.cells_per_length();
         let center = knots.forward.center();
         Self {
-            spectra: spectra.into_iter().map(Arc::new).collect(),
+            spectra: wrap(spectra.into_iter().map(Arc::new).collect()),
             ligand,
             center: [0, 1, 2].map(|axis| center[axis] / scale[axis]),
             effects,
@@ -79,11 +103,13 @@ impl<T: Real> ReceptorSpectra<T> {
     /// The same without the functions of one effect.
     #[must_use]
     pub fn without(&self, effect: Effect) -> Self {
-        let kept: Vec<usize> = (0..self.spectra.len())
+        let kept: Vec<usize> = (0..self.full_rank())
             .filter(|&b| self.effects[b] != effect)
             .collect();
         Self {
-            spectra: kept.iter().map(|&b| Arc::clone(&self.spectra[b])).collect(),
+            spectra: in_precision!(&self.spectra, spectra => {
+                kept.iter().map(|&b| Arc::clone(&spectra[b])).collect()
+            }),
             ligand: self.ligand.select_columns(&kept),
             center: self.center,
             effects: kept.iter().map(|&b| self.effects[b]).collect(),
@@ -95,35 +121,55 @@ impl<T: Real> ReceptorSpectra<T> {
         self.effects[function]
     }
 
-    /// `H[basis function][mode]`, window and volume not yet divided out on the ligand's side.
-    pub fn spectra(&self) -> &[Arc<Vec<Complex<T>>>] {
-        &self.spectra
+    /// Floating-point type of the spectra.
+    pub fn precision(&self) -> Precision {
+        self.spectra.precision()
+    }
+
+    /// `H[function]` at a mode by its place, window and volume not yet divided out on the ligand's side.
+    pub(crate) fn value(&self, function: usize, place: usize) -> Complex64 {
+        of_precision!(&self.spectra, spectra => {
+            let value = spectra[function][place];
+            Complex64::new(value.re.wide(), value.im.wide())
+        })
+    }
+
+    /// Sum over the modes of the squared magnitudes of each function.
+    pub(super) fn norms(&self) -> Vec<f64> {
+        of_precision!(&self.spectra, spectra => {
+            let squares = spectra.par_iter().map(|spectrum| {
+                spectrum.iter().map(|value| value.norm_sqr().wide()).sum()
+            });
+            squares.collect()
+        })
     }
 
     /// Leaves out all modes but those of a selection, for the whole correlation.
     pub fn keep(&mut self, selection: &Selection) {
-        for spectrum in &mut self.spectra {
-            for (place, value) in Arc::make_mut(spectrum).iter_mut().enumerate() {
-                if !selection.keeps(place) {
-                    *value = Complex::new(T::zero(), T::zero());
+        of_precision!(&mut self.spectra, spectra => {
+            for spectrum in spectra {
+                for (place, value) in Arc::make_mut(spectrum).iter_mut().enumerate() {
+                    if !selection.keeps(place) {
+                        *value = Default::default();
+                    }
                 }
             }
-        }
+        });
     }
 
     /// d_j v_b(s_j) of ligand knot j.
-    pub fn ligand_weight(&self, knot: usize, function: usize) -> f64 {
+    pub(crate) fn ligand_weight(&self, knot: usize, function: usize) -> f64 {
         self.ligand[(knot, function)]
     }
 
     /// Where the receptor's middle lies in the box, Å.
-    pub fn center(&self) -> [f64; 3] {
+    pub(crate) fn center(&self) -> [f64; 3] {
         self.center
     }
 
     /// Number of functions: the rank that is exact.
     pub fn full_rank(&self) -> usize {
-        self.spectra.len()
+        self.effects.len()
     }
 
     /// The factorisation of the functions of all effects together, into as many terms as there are functions.
@@ -131,8 +177,8 @@ impl<T: Real> ReceptorSpectra<T> {
     /// With D the ligand's (knots, basis) matrix and S = (D'D)^(1/2), the product H D' is (H S)(D S^-1)'. The singular
     /// vectors of H S give the best q terms in the mean over knots placed at random. H S is stacked [Re; Im], so that V
     /// stays real.
-    pub fn factor(&self, modes: &ModeSet) -> Factors {
-        let size = self.spectra.len();
+    pub(crate) fn factor(&self, modes: &ModeSet) -> Factors {
+        let size = self.full_rank();
         let mut gram = DMatrix::<f64>::zeros(size, size);
         let mut multiplicities = Vec::with_capacity(modes.count);
         modes.for_each(|_, _, multiplicity| multiplicities.push(multiplicity));
@@ -140,12 +186,9 @@ impl<T: Real> ReceptorSpectra<T> {
             .flat_map(|a| (0..=a).map(move |b| (a, b)))
             .collect();
         let products = lower.into_par_iter().map(|(a, b)| {
-            let sum: f64 = self.spectra[a]
-                .iter()
-                .zip(self.spectra[b].iter())
-                .zip(&multiplicities)
-                .map(|((x, y), m)| m * (x.re.wide() * y.re.wide() + x.im.wide() * y.im.wide()))
-                .sum();
+            let sum = of_precision!(&self.spectra, spectra => {
+                product(&spectra[a], &spectra[b], &multiplicities)
+            });
             (a, b, sum)
         });
         for (a, b, sum) in products.collect::<Vec<_>>() {
@@ -180,6 +223,14 @@ impl<T: Real> ReceptorSpectra<T> {
             singular,
         }
     }
+}
+
+/// Sum over the modes of the products of two functions, each with its multiplicity.
+fn product<T: Real>(x: &[Complex<T>], y: &[Complex<T>], multiplicities: &[f64]) -> f64 {
+    let pairs = x.iter().zip(y).zip(multiplicities);
+    pairs
+        .map(|((x, y), m)| m * (x.re.wide() * y.re.wide() + x.im.wide() * y.im.wide()))
+        .sum()
 }
 
 /// Values of the functions at the ligand's knots, and their effects: the ligand's side of a correlation, which needs no

@@ -9,7 +9,6 @@
 // Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
 #![allow(clippy::needless_range_loop)]
 
-mod effects;
 mod gradient;
 mod score;
 mod tables;
@@ -21,11 +20,10 @@ use crate::kernel::RankingKernel;
 pub use crate::rigid_move::{PoseGradient, center};
 use crate::se3::Pose;
 use crate::terms::effect::{ActiveTerm, Effect};
-use effects::PairTerm;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use nalgebra::{Rotation3, Vector3};
-use tables::PairTables;
+use tables::{PairTables, PairTerm};
 
 /// The exact score of one pose by term.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -7,8 +7,7 @@
 //! vector features. Vectors are spelt out where it found none of its own: that took the score with its slices from 0.71
 //! to 0.39 of the plain loop's time (`cargo bench --bench exact`, AMD EPYC, AVX2).
 
-use super::effects::PairTerm;
-use super::tables::{Line, Places};
+use super::tables::{Line, PairTerm, Places};
 use super::{ExactScore, ExactScorer, ScoreTerms, ShapeParts};
 use crate::blocks::{LANES, Near, vectors, vectors_mut};
 use crate::se3::Pose;

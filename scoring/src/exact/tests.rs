@@ -1,9 +1,8 @@
 //! Tests of the exact score against plain loops, central differences and closed forms.
 
 use super::*;
-use crate::affinity::DoubleSkin;
 use crate::kernel::KernelOptions;
-use crate::test_support::Numbers;
+use crate::test_support::{AffinityKnots, Numbers};
 use num_complex::Complex64;
 
 fn kernel() -> RankingKernel {
@@ -39,22 +38,21 @@ fn equals_the_plain_double_sum_and_the_complex_one_array_form() {
     );
     let scorer = ExactScorer::new(&kernel, &a, &b).unwrap();
     let ours = scorer.score(&pose);
-    let skin = DoubleSkin {
-        lambda: 10.0,
-        offset: 2.0,
-    };
-    let (fa, fb) = (skin.knots(&a), skin.knots(&b));
+    let (fa, fb) = (
+        AffinityKnots::of(&a, 10.0, 2.0),
+        AffinityKnots::of(&b, 10.0, 2.0),
+    );
     let mut whole = Complex64::new(0.0, 0.0);
     let mut plain = Complex64::new(0.0, 0.0);
-    for i in 0..fa.radii().len() {
-        for j in 0..fb.radii().len() {
-            let x = pose.apply(fb.centers()[j]);
+    for i in 0..fa.radii.len() {
+        for j in 0..fb.radii.len() {
+            let x = pose.apply(fb.centers[j]);
             let d = (0..3)
-                .map(|k| (x[k] - fa.centers()[i][k]).powi(2))
+                .map(|k| (x[k] - fa.centers[i][k]).powi(2))
                 .sum::<f64>()
                 .sqrt();
-            let sigma = fa.radii()[i] + fb.radii()[j];
-            let weight = fa.weights()[i] * fb.weights()[j];
+            let sigma = fa.radii[i] + fb.radii[j];
+            let weight = fa.weights[i] * fb.weights[j];
             whole += weight
                 * if d < kernel.reach() {
                     kernel.value(d, sigma)

@@ -8,7 +8,7 @@
 //! psi_alpha(1 - 2 r / L) in section 2.2. For r < 0 the argument is above 1, where psi_alpha is 0: as printed it
 //! vanishes on its own support. The working sign, psi_alpha(1 + r / L) = psi_alpha(1 - sigma / L), is used here.
 
-use super::low_pass::smooth_step_down;
+use super::smooth_step_down;
 use knotdock_structures::numeric::Bump;
 use serde::{Deserialize, Serialize};
 

@@ -1,22 +1,22 @@
 //! Kernels: the bump function, its transform, the lifted cone, the low-passed kernel that ranks poses, and the product
 //! kernel of rasterised bumps.
 
-pub mod cone;
+mod cone;
 pub mod exponent;
-pub mod low_pass;
 mod options;
 pub mod product;
-pub mod product_sum;
-pub mod radial_filter;
+mod product_sum;
+pub(crate) mod radial_filter;
 pub mod radial_transform;
-pub mod ranking;
+mod ranking;
 #[cfg(test)]
 mod reference;
 pub mod table;
 
-pub use cone::{Cone, Trim};
+pub use cone::Trim;
 pub use knotdock_structures::numeric::{Bump, bump};
 pub use options::{KernelError, KernelOptions};
 pub use product::{Band, ProductKernel};
 pub use product_sum::ProductScorer;
+pub use radial_filter::smooth_step_down;
 pub use ranking::RankingKernel;

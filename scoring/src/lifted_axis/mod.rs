@@ -15,13 +15,11 @@
 //! pi i eta_k r0).
 
 mod basis;
-mod nodes;
 #[cfg(test)]
 mod tests;
 
 pub use basis::RadiusBasis;
 
-use crate::affinity::DoubleSkin;
 use crate::kernel::RankingKernel;
 use crate::quantity::Quantity;
 use num_complex::Complex64;
@@ -187,12 +185,11 @@ impl LiftedAxis {
     pub fn fold_factor(&self, kernel: &RankingKernel, fold: Quantity, k: i64) -> Complex64 {
         let eta = self.eta(k);
         match fold {
-            Quantity::Score => DoubleSkin {
-                lambda: kernel.options().lambda,
-                offset: kernel.options().offset,
+            // The square of an affinity function's factor (B&I eq. 51): i (exp(-2 pi i eta r0) - lambda).
+            Quantity::Score => {
+                let shift = Complex64::cis(-2.0 * PI * eta * kernel.options().offset);
+                (Complex64::i() * (shift - kernel.options().lambda)).powi(2)
             }
-            .multiplier(eta)
-            .powi(2),
             Quantity::Slice(index) => {
                 let offset = kernel.options().slice_offsets()[index];
                 Complex64::cis(-2.0 * PI * eta * offset)

@@ -17,6 +17,20 @@ fn series_converges_to_the_slices() {
     }
 }
 
+/// The square of the affinity function's factor is the weighted sum of the slices' factors.
+#[test]
+fn the_score_s_factor_is_the_weighted_sum_of_the_slices() {
+    let kernel = kernel(3.0, 3.8);
+    let axis = LiftedAxis::new(&kernel, 4);
+    let weights = kernel.options().slice_weights();
+    for k in [-4, 0, 1, 3] {
+        let factor = |quantity| axis.fold_factor(&kernel, quantity, k);
+        let slices = (0..3).map(|slice| weights[slice] * factor(Quantity::Slice(slice)));
+        let sum: Complex64 = slices.sum();
+        assert!((factor(Quantity::Score) - sum).norm() < 1e-12 * weights[0].abs());
+    }
+}
+
 /// The period and the radii sampled were once those of the flat top whatever the trim was. B&I's then met its own
 /// image, or was cut: no number of modes brought the series closer than 3e-4 to 1e-2.
 #[test]

@@ -49,13 +49,12 @@ mod accumulator;
 mod modes;
 mod pair;
 mod pair_table;
-mod pairs;
 mod quadrature;
-mod sharp;
 #[cfg(test)]
 mod tests;
 
-pub use accumulator::{Accumulator, Overlap, WeightedBall};
+pub use accumulator::{
+    Accumulator, Overlap, WeightedBall, overlap_of_all, overlap_of_pairs, pairs_nanoseconds,
+};
 pub use modes::{ModesOverlap, ModesSum, ModesWorkspace, OverlapModes, OverlapModesError};
 pub use pair::{PairOverlap, meet};
-pub use pairs::{overlap_of_all, overlap_of_pairs, pairs_nanoseconds};

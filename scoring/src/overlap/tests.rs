@@ -249,7 +249,9 @@ fn leaves_and_single_pairs_agree() {
         let one = overlap_of_all(&kernel, &a, &b, &Pose::identity(), about);
         let [mut leaves, mut swapped] = [(); 2].map(|()| Accumulator::new(&kernel, about));
         let met: u64 = a.iter().map(|ball| leaves.add_leaf(ball, &b)).sum();
-        let back: u64 = b.iter().map(|ball| swapped.add_to_leaf(&a, ball)).sum();
+        let mut add = |x: &WeightedBall, y: &WeightedBall| u64::from(swapped.add(x, y));
+        let back = b.iter().flat_map(|y| a.iter().map(move |x| (x, y)));
+        let back: u64 = back.map(|(x, y)| add(x, y)).sum();
         assert_eq!([met, back], [one.pairs; 2]);
         // The same order, the same bits.
         let mut single = Accumulator::new(&kernel, about);

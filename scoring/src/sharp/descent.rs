@@ -1,7 +1,6 @@
 //! Levenberg-Marquardt descents over rigid moves, several of them about a pose, and quasi-Newton steps to the minimum.
 
-use super::energy::{Energy, STIFFNESS};
-use super::slope::Slope;
+use super::energy::{Energy, STIFFNESS, Slope};
 use super::{PairList, SharpFit};
 use crate::rigid_move::Move;
 use crate::se3::Pose;

@@ -1,7 +1,8 @@
 //! The energy of a pose, and the functions of a distance and an angle that make it.
 
 use super::Site;
-use nalgebra::Vector3;
+use crate::rigid_move::{Derivatives, Move};
+use nalgebra::{Matrix3, Vector3};
 
 /// Depth of a contact, RT.
 pub(super) const DEPTH: f64 = 0.25;
@@ -113,4 +114,70 @@ pub(super) fn angle_weight(direction: &Vector3<f64>, cosine: f64) -> (f64, f64) 
     }
     let t = (cosine / STRAIGHT).clamp(0.0, 1.0);
     (t * t * (3.0 - 2.0 * t), 6.0 * t * (1.0 - t) / STRAIGHT)
+}
+
+/// Energy of a move with its derivatives by a further step. The curvature is that of overlaps along the lines between
+/// their atoms: positive semidefinite.
+pub(super) struct Slope {
+    pub energy: Energy,
+    pub by_step: Derivatives,
+}
+
+impl Slope {
+    /// Slope of nothing.
+    pub fn zero() -> Self {
+        Self {
+            energy: Energy::default(),
+            by_step: Derivatives::zero(),
+        }
+    }
+}
+
+/// A donor and an acceptor that a move may bring together.
+pub(super) struct BondPair {
+    /// Ligand atom before any move relative to the centre of the interface, Å.
+    pub arm: Vector3<f64>,
+    /// Its direction.
+    pub direction: Vector3<f64>,
+    /// Receptor atom relative to the centre of the interface, Å.
+    pub other: Vector3<f64>,
+    /// Its direction.
+    pub other_direction: Vector3<f64>,
+    /// How often the bond counts: twice between opposite charges.
+    pub count: f64,
+}
+
+/// Distance in Å from which no hydrogen bond has an energy.
+pub(super) const BOND_REACH: f64 = BOND_LENGTH + BOND_RANGE;
+
+impl BondPair {
+    /// Adds the energy and slope of the pair at a move.
+    pub fn add(&self, turn: &Matrix3<f64>, at: &Move, slope: &mut Slope) {
+        let arm = turn * self.arm;
+        let between = arm + at.shift - self.other;
+        let square = between.norm_squared();
+        if square > BOND_REACH * BOND_REACH || square == 0.0 {
+            return;
+        }
+        let distance = square.sqrt();
+        let along = between / distance;
+        let direction = turn * self.direction;
+        let (depth, by_distance) = well(distance - BOND_LENGTH, BOND_RANGE);
+        let cosines = [self.other_direction.dot(&along), -direction.dot(&along)];
+        let (first, by_first) = angle_weight(&self.other_direction, cosines[0]);
+        let (second, by_second) = angle_weight(&direction, cosines[1]);
+        let value = depth * first * second;
+        if value == 0.0 {
+            return;
+        }
+        slope.energy.bonds += self.count * value;
+        let by_position = by_distance * first * second * along
+            + depth * second * by_first / distance * (self.other_direction - cosines[0] * along)
+            - depth * first * by_second / distance * (direction + cosines[1] * along);
+        let by_direction = -(depth * first * by_second) * along;
+        let scale = -BOND * self.count;
+        let gradient = scale * by_position;
+        let torque = arm.cross(&gradient) + direction.cross(&(scale * by_direction));
+        slope.by_step.push(&gradient, &torque);
+    }
 }

@@ -28,10 +28,8 @@
 mod contacts;
 mod descent;
 mod energy;
-mod hydrogen_bond;
 mod nearness;
 mod pair_list;
-mod slope;
 #[cfg(test)]
 mod tests;
 
@@ -146,7 +144,7 @@ impl SharpFit {
 
     /// Distance in Å from which a ligand atom has no energy.
     fn reach(&self, ligand: &Site) -> f64 {
-        (self.widest + ligand.radius + energy::RANGE).max(hydrogen_bond::BOND_REACH)
+        (self.widest + ligand.radius + energy::RANGE).max(energy::BOND_REACH)
     }
 
     /// Rotation of the ligand, and the place of its centre relative to the receptor's.

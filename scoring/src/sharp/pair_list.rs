@@ -1,9 +1,7 @@
 //! Lists of the pairs of atoms near an interface.
 
 use super::contacts::{LigandAtom, PositionLanes, atom_sums};
-use super::energy::bond_count;
-use super::hydrogen_bond::{BOND_REACH, BondPair};
-use super::slope::Slope;
+use super::energy::{BOND_REACH, BondPair, Slope, bond_count};
 use super::{SharpFit, Site};
 use crate::blocks::Near;
 use crate::rigid_move::Move;

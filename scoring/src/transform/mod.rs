@@ -11,9 +11,9 @@ pub mod direct;
 pub mod modes;
 pub mod ndft;
 pub mod nufft;
-pub mod pruned_type1;
+pub(crate) mod pruned_type1;
 pub mod real_fft_3d;
-pub mod spreading;
+pub(crate) mod spreading;
 pub(crate) mod transpose;
 pub mod truncation;
 

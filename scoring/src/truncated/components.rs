@@ -5,7 +5,6 @@
 
 use crate::engine::Plan;
 use crate::engine::{Factors, ReceptorSpectra};
-use crate::transform::Real;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -23,23 +22,16 @@ pub(super) struct Component {
 
 impl Component {
     /// H of the component at a mode.
-    pub fn mode<T: Real>(&self, spectra: &ReceptorSpectra<T>, place: usize) -> Complex64 {
+    pub fn mode(&self, spectra: &ReceptorSpectra, place: usize) -> Complex64 {
         self.terms
             .iter()
-            .map(|&(function, coefficient)| {
-                let value = spectra.spectra()[function][place];
-                Complex64::new(value.re.wide(), value.im.wide()) * coefficient
-            })
+            .map(|&(function, coefficient)| spectra.value(function, place) * coefficient)
             .sum()
     }
 }
 
 /// The components of a correlation.
-pub(super) fn of<T: Real>(
-    plan: &Plan,
-    spectra: &ReceptorSpectra<T>,
-    knots: usize,
-) -> Vec<Component> {
+pub(super) fn of(plan: &Plan, spectra: &ReceptorSpectra, knots: usize) -> Vec<Component> {
     let functions = spectra.full_rank();
     let direct: Vec<Component> = (0..functions)
         .map(|function| Component {
@@ -79,10 +71,7 @@ fn nonzero(knots: usize, weight: impl Fn(usize) -> f64) -> Vec<(usize, f64)> {
 }
 
 /// exp(+2 pi i w.c) by place of the mode, c the middle of the receptor in the box.
-pub(super) fn centering<T: Real>(
-    plan: &Plan,
-    spectra: &ReceptorSpectra<T>,
-) -> impl Fn(usize) -> Complex64 {
+pub(super) fn centering(plan: &Plan, spectra: &ReceptorSpectra) -> impl Fn(usize) -> Complex64 {
     let center = spectra.center();
     let mut turns = Vec::with_capacity(plan.modes().count);
     plan.modes().for_each(|_, w, _| {

@@ -15,32 +15,22 @@
 //! The polynomial repeats with the box. Where the ligand's centre lies outside the box, whose edge no contact reaches,
 //! value and gradient are zero.
 
-mod columns;
 mod components;
-mod frame;
-mod gather;
-mod knots;
-mod place;
-mod read;
-mod rotation_spectrum;
-mod workspace;
+mod layout;
+mod tables;
 
-pub use rotation_spectrum::RotationSpectrum;
-pub use workspace::Workspace;
-
-use crate::engine::Plan;
-use crate::engine::ReceptorSpectra;
+use crate::engine::{Plan, ReceptorSpectra};
 use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
-use crate::transform::Real;
+use crate::transform::modes::ModeSet;
 use crate::transform::truncation::Selection;
 use crate::vectorized::vectorized;
-use columns::{Harmonic, Layout};
-use frame::Frame;
 use knotdock_structures::Knots;
-use knots::Block;
+use layout::{Harmonic, Layout};
 use nalgebra::{UnitQuaternion, Vector3};
+use num_complex::Complex64;
 use std::sync::Arc;
+use tables::{Block, GatherTables, PlaceTables, ReadTables};
 
 /// One pair of knot sets at chosen modes, ready for one pose at a time.
 pub struct TruncatedCorrelation {
@@ -55,9 +45,9 @@ pub struct TruncatedCorrelation {
 impl TruncatedCorrelation {
     /// Takes the selected modes of a correlation ([`crate::quantity::Quantity`] says of what: score, slice or
     /// sensitivity).
-    pub fn new<T: Real>(
+    pub fn new(
         plan: &Plan,
-        spectra: &ReceptorSpectra<T>,
+        spectra: &ReceptorSpectra,
         ligand: &Knots,
         selection: &Selection,
     ) -> Self {
@@ -150,5 +140,126 @@ impl TruncatedCorrelation {
             },
         );
         RotationSpectrum::new(Arc::clone(&self.layout), self.frame, *rotation, values)
+    }
+}
+
+/// Where the two bodies lie.
+#[derive(Clone, Copy, Debug)]
+struct Frame {
+    pub receptor_center: Vector3<f64>,
+    pub ligand_center: Vector3<f64>,
+    /// Half the box, Å.
+    pub half: Vector3<f64>,
+}
+
+impl Frame {
+    /// The ligand's centre relative to the receptor's, Å; `None` outside the box.
+    pub fn position(
+        &self,
+        rotation: &UnitQuaternion<f64>,
+        translation: &Vector3<f64>,
+    ) -> Option<Vector3<f64>> {
+        let position = rotation * self.ligand_center + translation - self.receptor_center;
+        (0..3)
+            .all(|axis| position[axis].abs() <= self.half[axis])
+            .then_some(position)
+    }
+}
+
+/// Tables of phases: one evaluation at a time, for any configuration of the same pair and no more modes.
+#[derive(Clone, Debug)]
+pub struct Workspace {
+    read: ReadTables,
+    place: PlaceTables,
+    gather: GatherTables,
+}
+
+impl Workspace {
+    fn new(layout: &Layout, blocks: usize) -> Self {
+        Self {
+            read: ReadTables::new(layout),
+            place: PlaceTables::new(layout),
+            gather: GatherTables::new(layout, blocks),
+        }
+    }
+}
+
+/// The spectrum of one rotation.
+#[derive(Clone, Debug)]
+pub struct RotationSpectrum {
+    layout: Arc<Layout>,
+    frame: Frame,
+    rotation: UnitQuaternion<f64>,
+    values: Vec<Harmonic>,
+}
+
+impl RotationSpectrum {
+    fn new(
+        layout: Arc<Layout>,
+        frame: Frame,
+        rotation: UnitQuaternion<f64>,
+        values: Vec<Harmonic>,
+    ) -> Self {
+        Self {
+            layout,
+            frame,
+            rotation,
+            values,
+        }
+    }
+
+    /// A correlation whose spectrum is known from elsewhere, a grid for instance: `mode` gives G^(w) / volume by place
+    /// in the set, and must be that of a real function. Both bodies have their centres at the origin and the rotation
+    /// is none, so that a pose's translation is the place in the box at which the correlation is read.
+    pub fn from_spectrum(
+        modes: &ModeSet,
+        selection: &Selection,
+        mode: impl Fn(usize) -> Complex64,
+    ) -> Self {
+        let layout = Layout::new(modes, selection);
+        let values = layout.harmonics_of(1.0, mode);
+        let frame = Frame {
+            receptor_center: Vector3::zeros(),
+            ligand_center: Vector3::zeros(),
+            half: Vector3::from(modes.lengths) * 0.5,
+        };
+        Self::new(Arc::new(layout), frame, UnitQuaternion::identity(), values)
+    }
+
+    /// Buffers for [`Self::gradient`], where no [`super::TruncatedCorrelation`] has made them.
+    pub fn workspace(&self) -> Workspace {
+        Workspace::new(&self.layout, 0)
+    }
+
+    /// Modes in use, conjugates counted.
+    pub fn modes(&self) -> usize {
+        self.layout.modes
+    }
+
+    /// The rotation.
+    pub fn rotation(&self) -> &UnitQuaternion<f64> {
+        &self.rotation
+    }
+
+    /// |G^(w; R)| / volume of every mode of the plan's set, 0 for those not in use: what [`crate::transform::truncation::rms_left_out`]
+    /// and [`crate::transform::truncation::Selection::by_magnitude`] take. `count` is the number of modes in the set.
+    pub fn magnitudes(&self, count: usize) -> Vec<f64> {
+        self.layout.magnitudes(&self.values, count)
+    }
+
+    /// Value at a pose of this rotation with translation `translation` (Å, as in [`crate::se3::Pose`]), and its
+    /// gradient per Å. O(modes).
+    pub fn gradient(
+        &self,
+        translation: &Vector3<f64>,
+        work: &mut Workspace,
+    ) -> (f64, Vector3<f64>) {
+        match self.frame.position(&self.rotation, translation) {
+            Some(position) => vectorized(
+                #[inline(always)]
+                || work.place.sum(&self.layout, &self.values, &position),
+            ),
+            None => Default::default(),
+        }
     }
 }

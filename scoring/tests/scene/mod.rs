@@ -4,19 +4,19 @@
 // The tests of either package use a part of this.
 #![allow(dead_code)]
 
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra, Workspace};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::kernel::{KernelOptions, RankingKernel, Trim};
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
-use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
 #[path = "../../src/test_support.rs"]
 mod test_support;
-pub use test_support::Numbers;
+pub use test_support::{AffinityKnots, Numbers};
 
 /// Radii like those of protein atoms, Å.
 pub const RADII: [f64; 3] = [1.5, 1.7, 1.9];
@@ -99,27 +99,27 @@ pub fn some_rotation() -> UnitQuaternion<f64> {
 }
 
 /// A pair prepared for both the fast path and the exact sum.
-pub struct Pair<T: Real> {
+pub struct Pair {
     pub plan: Arc<Plan>,
-    pub engine: CpuEngine<T>,
+    pub engine: CpuEngine,
     pub scorer: ExactScorer,
 }
 
-impl<T: Real> Pair<T> {
+impl Pair {
     /// The pair with the fast path's full rank.
-    pub fn new(a: &Knots, b: &Knots, options: EngineOptions) -> Self {
-        Self::of_plan(Plan::new(a, b, options).unwrap(), a, b)
+    pub fn new(precision: Precision, a: &Knots, b: &Knots, options: EngineOptions) -> Self {
+        Self::of_plan(precision, Plan::new(a, b, options).unwrap(), a, b)
     }
 
     /// The same on the grid that is turned to fit the receptor.
-    pub fn fitted(a: &Knots, b: &Knots, options: EngineOptions) -> Self {
+    pub fn fitted(precision: Precision, a: &Knots, b: &Knots, options: EngineOptions) -> Self {
         let plan = Plan::new(a, b, options).unwrap();
-        Self::of_plan(plan.fitted(a).unwrap(), a, b)
+        Self::of_plan(precision, plan.fitted(a).unwrap(), a, b)
     }
 
-    fn of_plan(plan: Plan, a: &Knots, b: &Knots) -> Self {
+    fn of_plan(precision: Precision, plan: Plan, a: &Knots, b: &Knots) -> Self {
         let plan = Arc::new(plan);
-        let spectra = ReceptorSpectra::<T>::new(&plan, a, b, Quantity::Score);
+        let spectra = ReceptorSpectra::new(&plan, a, b, Quantity::Score, precision);
         Self {
             engine: CpuEngine::new(Arc::clone(&plan), &spectra, b, spectra.full_rank()),
             scorer: ExactScorer::new(plan.kernel(), a, b).unwrap(),
@@ -128,7 +128,7 @@ impl<T: Real> Pair<T> {
     }
 
     /// The fast path's scores over all translations at a rotation.
-    pub fn correlate(&self, rotation: &UnitQuaternion<f64>) -> Workspace<T> {
+    pub fn correlate(&self, rotation: &UnitQuaternion<f64>) -> Workspace {
         let mut work = self.engine.workspace();
         self.engine.correlate(rotation, &mut work);
         work
@@ -149,13 +149,13 @@ impl<T: Real> Pair<T> {
     /// them.
     pub fn error(&self, rotation: UnitQuaternion<f64>, step: usize, best: usize) -> (f64, f64) {
         let work = self.correlate(&rotation);
-        let mut order: Vec<usize> = (0..work.grid.len()).collect();
-        order.sort_by(|&x, &y| work.grid[y].wide().total_cmp(&work.grid[x].wide()));
+        let mut order: Vec<usize> = (0..work.scores.count()).collect();
+        order.sort_by(|&x, &y| work.scores.score(y).total_cmp(&work.scores.score(x)));
         let sweep = order.iter().copied().step_by(step);
         let (mut error, mut highest) = (0.0f64, f64::NEG_INFINITY);
         for voxel in order.iter().copied().take(best).chain(sweep) {
             let exact = self.exact(rotation, voxel);
-            let off = (exact - work.grid[voxel].wide()).abs();
+            let off = (exact - work.scores.score(voxel)).abs();
             assert!(off.is_finite(), "voxel {voxel}: {exact}");
             error = error.max(off);
             highest = highest.max(exact);

@@ -5,7 +5,7 @@
 
 use crate::dock::memory::process;
 use crate::dock::scene::{LengthUnit, Scene};
-use crate::options::{DockOptions, Precision};
+use crate::options::DockOptions;
 use crate::pose_space::PoseSpace;
 use crate::pose_space::refine::RefinedPose;
 use crate::pose_space::rotations::RotationGroup;
@@ -105,10 +105,7 @@ impl Sizes {
         (space, refined): (&PoseSpace, usize),
     ) -> Self {
         let ligand = &scene.ligand;
-        let sizes = match options.search.precision {
-            Precision::Single => EngineMemory::new::<f32>(engine, ligand),
-            Precision::Double => EngineMemory::new::<f64>(engine, ligand),
-        };
+        let sizes = EngineMemory::new(engine, ligand, options.search.precision.into());
         let atoms = (scene.receptor.len() + ligand.len()) as u64;
         let held = process::held().unwrap_or(PROGRAM + ATOM_READ * atoms);
         let search = &options.search;

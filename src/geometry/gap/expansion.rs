@@ -11,7 +11,7 @@
 //! A is computed beforehand for every |w| of a box, as in the paper, and costs no time here.
 
 use super::spectrum::{Body, FrequencyBox, Kernel, exact, phase, square};
-use knotdock_scoring::kernel::low_pass::smooth_step_down;
+use knotdock_scoring::kernel::smooth_step_down;
 use nalgebra::DMatrix;
 use num_complex::Complex64;
 use std::f64::consts::PI;

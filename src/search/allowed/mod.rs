@@ -27,7 +27,6 @@ use balls::Ball;
 use knotdock_scoring::engine::{CpuEngine, Plan};
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::terms::pose::{DistanceRestraints, Membrane};
-use knotdock_scoring::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use slab::Slab;
@@ -81,7 +80,7 @@ impl Allowed {
     }
 
     /// Prepares the regions of an engine's grids.
-    pub fn regions<'a, T: Real>(&'a self, engine: &'a CpuEngine<T>) -> Regions<'a> {
+    pub fn regions<'a>(&'a self, engine: &'a CpuEngine) -> Regions<'a> {
         Regions {
             allowed: self,
             plan: engine.plan(),
@@ -139,7 +138,7 @@ struct Axes {
 }
 
 impl Axes {
-    fn of<T: Real>(engine: &CpuEngine<T>, turn: GridTurn) -> Self {
+    fn of(engine: &CpuEngine, turn: GridTurn) -> Self {
         let plan = engine.plan();
         let counts = plan.size();
         let strides = [counts[1] * counts[2], counts[2], 1];

@@ -6,7 +6,7 @@
 
 use crate::search::allowed::lanes::{Balls, Span};
 use crate::search::allowed::slab::Slab;
-use knotdock_scoring::transform::Real;
+use knotdock_scoring::peaks::ScoreGrid;
 use knotdock_scoring::vectorized::vectorized;
 use std::ops::Range;
 
@@ -76,36 +76,25 @@ impl Region {
         !self.open.contains(&true)
     }
 
-    /// Takes out all voxels of cells that hold none that is allowed: sets them to minus infinity, and updates the
-    /// largest value of each row.
-    pub fn take_cells_out<T: Real>(&mut self, grid: &mut [T], row_best: &mut [T]) {
+    /// Takes all voxels of cells without an allowed voxel out of a grid.
+    pub fn restrict(&mut self, scores: &mut ScoreGrid) {
         let [nx, ny, nz] = self.counts;
         self.unchecked.clear();
         self.unchecked.resize(nx * ny, true);
-        let rows = grid.chunks_exact_mut(nz).zip(row_best);
-        for (row, (values, best)) in rows.enumerate() {
-            let open = self.open_along(row);
-            *best = T::neg_infinity();
-            if !open.contains(&true) {
-                values.fill(T::neg_infinity());
-                continue;
-            }
-            for (cell, open) in cells(nz).zip(open) {
-                for z in cell {
-                    let value = &mut values[wrapped(z + self.firsts[2], nz)];
-                    if !open {
-                        *value = T::neg_infinity();
-                    } else if *value > *best {
-                        *best = *value;
+        scores.restrict(&mut |row, open| {
+            for (cell, is_open) in cells(nz).zip(self.open_along(row)) {
+                if !is_open {
+                    for z in cell {
+                        open[wrapped(z + self.firsts[2], nz)] = false;
                     }
                 }
             }
-        }
+        });
     }
 
-    /// Takes the voxels of a row that are not allowed out, and those below `floor`: sets them to minus infinity. False
-    /// where this has been done before. `values` are those of [`Region::take_cells_out`].
-    pub fn take_voxels_out<T: Real>(&mut self, row: usize, floor: f64, values: &mut [T]) -> bool {
+    /// Clears the marks of a row's voxels that are not allowed. False if this has been done before. The row is one of
+    /// the grid of [`Region::restrict`].
+    pub fn check(&mut self, row: usize, open: &mut [bool]) -> bool {
         if !std::mem::take(&mut self.unchecked[row]) {
             return false;
         }
@@ -116,16 +105,11 @@ impl Region {
             #[inline(always)]
             || {
                 balls.left_along(Span::new(x, x), Span::new(y, y), left);
-                for (index, value) in values.iter_mut().enumerate() {
-                    if *value == T::neg_infinity() {
-                        continue;
-                    }
+                for (index, open) in open.iter_mut().enumerate().filter(|(_, open)| **open) {
                     let z = wrapped(index + count - first, count);
                     let spans = [x, y, z].map(|place| Span::new(place, place));
                     let is_out = slab.is_some_and(|slab| !slab.leaves(spans));
-                    if value.wide() < floor || is_out || !balls.hold(spans[2], left, self.needed) {
-                        *value = T::neg_infinity();
-                    }
+                    *open = !is_out && balls.hold(spans[2], left, self.needed);
                 }
             },
         );
@@ -152,13 +136,13 @@ impl Region {
     #[cfg(test)]
     pub fn allowed(&mut self) -> Vec<bool> {
         let [nx, ny, nz] = self.counts;
-        let mut grid = vec![0.0f32; nx * ny * nz];
-        let mut rows = vec![0.0; nx * ny];
-        self.take_cells_out(&mut grid, &mut rows);
-        for (row, values) in grid.chunks_mut(nz).enumerate() {
-            self.take_voxels_out(row, f64::NEG_INFINITY, values);
+        let mut scores = ScoreGrid::of_scores(self.counts, vec![0.0; nx * ny * nz]);
+        self.restrict(&mut scores);
+        let mut allowed: Vec<bool> = scores.iter().map(|score| score == 0.0).collect();
+        for (row, open) in allowed.chunks_mut(nz).enumerate() {
+            self.check(row, open);
         }
-        grid.iter().map(|value| *value == 0.0).collect()
+        allowed
     }
 }
 
@@ -181,7 +165,7 @@ fn span(places: &Range<usize>) -> Span {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use knotdock_scoring::peaks::{find_peaks, find_peaks_among};
+    use knotdock_scoring::peaks::PeakLimits;
 
     /// Adds balls by restraint.
     fn fill(region: &mut Region, balls: &[&[([f64; 3], f64)]]) {
@@ -250,25 +234,13 @@ mod tests {
                         *value = f32::NEG_INFINITY;
                     }
                 }
-                let best = |grid: &[f32]| -> Vec<f32> {
-                    let rows = grid.chunks(14);
-                    rows.map(|row| row.iter().copied().fold(f32::NEG_INFINITY, f32::max))
-                        .collect()
-                };
                 let (mut expected, mut found) = (Vec::new(), Vec::new());
-                let mut rows = best(&masked);
-                let values = (&mut masked[..], &mut rows[..]);
-                find_peaks(size, values, 0, (9, floor), &mut expected);
-                let (mut all, mut rows) = (grid.clone(), best(&grid));
-                region.take_cells_out(&mut all, &mut rows);
-                find_peaks_among(
-                    size,
-                    (&mut all, &mut rows),
-                    0,
-                    (9, floor),
-                    &mut found,
-                    |row, values| region.take_voxels_out(row, floor, values),
-                );
+                let limits = PeakLimits { count: 9, floor };
+                ScoreGrid::of_scores(size, masked).find_peaks(0, limits, &mut expected);
+                let mut all = ScoreGrid::of_scores(size, grid.clone());
+                region.restrict(&mut all);
+                let check = &mut |row, open: &mut [bool]| region.check(row, open);
+                all.find_peaks_among(0, limits, &mut found, check);
                 assert_eq!(found, expected);
                 assert_eq!(found.is_empty(), radius < 2.0 && floor > 0.0, "{found:?}");
             }

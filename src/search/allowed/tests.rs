@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::options::DockOptions;
+use knotdock_scoring::Precision;
 use knotdock_scoring::engine::ReceptorSpectra;
 use knotdock_scoring::quantity::Quantity;
 use knotdock_scoring::se3::Pose;
@@ -27,7 +28,13 @@ fn compare(
     let options = DockOptions::default().kernel.engine();
     let plan = Plan::new(&receptor, &ligand, options).unwrap();
     let plan = Arc::new(plan.fitted(&receptor).unwrap());
-    let spectra = ReceptorSpectra::<f32>::new(&plan, &receptor, &ligand, Quantity::Score);
+    let spectra = ReceptorSpectra::new(
+        &plan,
+        &receptor,
+        &ligand,
+        Quantity::Score,
+        Precision::Single,
+    );
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, 1);
     let known = Known {
         restraints,

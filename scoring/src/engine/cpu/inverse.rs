@@ -3,22 +3,31 @@
 //! The images of one ligand's transform go through together. A column of modes and the one with -ky are multiplied for
 //! all of them while both lie in the cache.
 
-use super::{CpuEngine, PLANES, Workspace};
+use super::PLANES;
+use super::transforms::{Buffers, Transforms};
 use crate::engine::columns::Reading;
 use crate::engine::packed::Packet;
 use crate::grid_turn::GridTurn;
-use crate::peaks::largest;
+use crate::peaks::{Rows, largest};
 use crate::transform::Real;
 use crate::transform::transpose::transpose;
+use crate::vectorized::vectorized;
 use num_complex::Complex;
 
 /// Columns ky, and as many -ky, that go through the x transforms together: a cache line of a plane's rows.
 pub(in crate::engine) const SIDE: usize = 8;
 
-impl<T: Real> CpuEngine<T> {
-    /// Products of columns and their inverse along x and y: of each turn's image the rows along z.
+impl<T: Real> Transforms<T> {
+    /// Products of columns and their inverse along x and y: the rows along z of each turn's image.
+    pub fn products(&self, turns: &[GridTurn], work: &mut Buffers<T>) {
+        vectorized(
+            #[inline(always)]
+            || self.multiply(turns, work),
+        );
+    }
+
     #[inline(always)]
-    pub(super) fn multiply(&self, turns: &[GridTurn], work: &mut Workspace<T>) {
+    fn multiply(&self, turns: &[GridTurn], work: &mut Buffers<T>) {
         let half = self.plan.modes().size[2] / 2 + 1;
         for block in (0..half).step_by(PLANES) {
             let depth = PLANES.min(half - block);
@@ -33,7 +42,7 @@ impl<T: Real> CpuEngine<T> {
 
     /// Plane kz of each image's product, transformed along x and y, into `work.planes` at `level`.
     #[inline(always)]
-    fn plane(&self, turns: &[GridTurn], kz: usize, level: usize, work: &mut Workspace<T>) {
+    fn plane(&self, turns: &[GridTurn], kz: usize, level: usize, work: &mut Buffers<T>) {
         let modes = self.plan.modes();
         let [nx, ny, _] = modes.size;
         let zero = Complex::new(T::zero(), T::zero());
@@ -112,7 +121,7 @@ impl<T: Real> CpuEngine<T> {
 
     /// Joins the rows of an image's `depth` planes from kz = `block` on in pairs.
     #[inline(always)]
-    fn pair_rows(&self, image: usize, block: usize, depth: usize, work: &mut Workspace<T>) {
+    fn pair_rows(&self, image: usize, block: usize, depth: usize, work: &mut Buffers<T>) {
         let [nx, ny, nz] = self.plan.modes().size;
         let planes = &work.planes[image * PLANES * nx * ny..(image + 1) * PLANES * nx * ny];
         let rows = &mut work.rows[image * nx * ny / 2 * nz..(image + 1) * nx * ny / 2 * nz];
@@ -133,13 +142,20 @@ impl<T: Real> CpuEngine<T> {
     }
 
     /// Rows of an image: complex to real along z, two at a time, and the best of each row.
+    pub fn image(&self, image: usize, work: &mut Buffers<T>, grid: &mut Rows<T>) {
+        vectorized(
+            #[inline(always)]
+            || self.rows_to_grid(image, work, grid),
+        );
+    }
+
     #[inline(always)]
-    pub(super) fn rows_to_grid(&self, image: usize, work: &mut Workspace<T>) {
+    fn rows_to_grid(&self, image: usize, work: &mut Buffers<T>, grid: &mut Rows<T>) {
         let [nx, ny, nz] = self.plan.modes().size;
         let planes = work.rows[image * nx * ny / 2 * nz..(image + 1) * nx * ny / 2 * nz]
             .chunks_exact_mut(ny / 2 * nz)
-            .zip(work.grid.chunks_exact_mut(ny * nz))
-            .zip(work.row_best.chunks_exact_mut(ny));
+            .zip(grid.values.chunks_exact_mut(ny * nz))
+            .zip(grid.best.chunks_exact_mut(ny));
         for ((pairs, grid), best) in planes {
             self.inverse_z
                 .process_with_scratch(pairs, &mut work.scratch);

@@ -7,22 +7,21 @@
 //! Turns that map the grid onto itself map its modes onto themselves, so one ligand transform serves four rotations, or
 //! eight ([`GridTurn`]). With F the turn, B(w; F R) = B(F^-1 w; R): another reading of the same columns.
 
-mod forward;
 mod inverse;
+mod transforms;
 
 pub(in crate::engine) use inverse::SIDE;
+pub(in crate::engine) use transforms::{Transforms, ligand_forward};
 
-use super::columns::Reading;
-use super::packed::{LANES, Packet, Packing};
 use super::plan::Plan;
+use super::receptor_spectra::{Factors, ReceptorSpectra};
 use crate::grid_turn::GridTurn;
-use crate::transform::Real;
-use crate::transform::pruned_type1::{Forward, ForwardWorkspace};
-use crate::vectorized::vectorized;
+use crate::peaks::{Rows, ScoreGrid};
+use crate::precision::{InPrecision, Precision, in_precision, of_precision};
+use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
-use num_complex::Complex;
-use rustfft::Fft;
 use std::sync::Arc;
+use transforms::Buffers;
 
 /// Columns that go through the x transforms together.
 pub(super) const COLUMNS: usize = 8;
@@ -33,136 +32,108 @@ pub(super) const PLANES: usize = 8;
 pub const TOGETHER: usize = 4;
 
 /// A prepared correlation of one pair.
-pub struct CpuEngine<T: Real> {
-    pub(super) plan: Arc<Plan>,
-    pub(super) forward: Forward<T>,
-    pub(super) packing: Packing,
-    /// U, packed.
-    pub(super) spectra: Vec<Packet<T>>,
-    /// d_j V_q(s_j): [knot][component].
-    pub(super) weights: Vec<T>,
-    /// Ligand knots relative to the ligand's centre, Å.
-    pub(super) ligand: Vec<Vector3<f64>>,
-    /// Place of the ligand's centre in its own block, and of the receptor's in its, Å.
-    pub(super) block_center: [f64; 3],
-    pub(super) receptor_center: [f64; 3],
-    /// Where the columns are read, for each turn that maps the modes onto themselves.
-    pub(super) readings: Arc<[Vec<Reading>]>,
-    pub(super) inverse_x: Arc<dyn Fft<T>>,
-    pub(super) inverse_y: Arc<dyn Fft<T>>,
-    pub(super) inverse_z: Arc<dyn Fft<T>>,
-    /// Singular values of the lifted axis in use, as shares of the largest.
-    pub(super) singular: Vec<f64>,
-}
+pub struct CpuEngine(pub(super) InPrecision<Transforms<f32>, Transforms<f64>>);
 
 /// Buffers of one rotation in flight; nothing is allocated after this.
-pub struct Workspace<T> {
-    forward: ForwardWorkspace<T>,
-    points: Vec<[f64; 3]>,
-    /// [column][kx], with room for a packet before and after.
-    lines: Vec<Complex<T>>,
-    /// The turned ligand's transform, packed like the engine's spectra.
-    turned: Vec<Packet<T>>,
-    /// Products of a column.
-    sums: Vec<Packet<T>>,
-    /// [image][column][x].
-    product: Vec<Complex<T>>,
-    scratch: Vec<Complex<T>>,
-    /// [image][kz in block][x][y].
-    planes: Vec<Complex<T>>,
-    /// [image][x][pair of y][kz]: two rows' spectra as one, A + iB.
-    rows: Vec<Complex<T>>,
+pub struct Workspace {
+    buffers: InPrecision<Buffers<f32>, Buffers<f64>>,
     /// Images that go through together, at the most.
     images: usize,
-    /// Scores, (nx, ny, nz) row-major.
-    pub grid: Vec<T>,
-    /// Largest score of each row (x, y).
-    pub row_best: Vec<T>,
+    /// Scores of all translations.
+    pub scores: ScoreGrid,
 }
 
-impl<T: Real> CpuEngine<T> {
+/// Calls a method of an engine's transforms with a workspace's buffers and grid, which are of the same precision.
+macro_rules! on_buffers {
+    ($engine:expr, $work:expr, ($transforms:ident, $buffers:ident, $grid:ident) => $result:expr) => {
+        match (&$engine.0, &mut $work.buffers, &mut $work.scores.0) {
+            (
+                InPrecision::Single($transforms),
+                InPrecision::Single($buffers),
+                InPrecision::Single($grid),
+            ) => $result,
+            (
+                InPrecision::Double($transforms),
+                InPrecision::Double($buffers),
+                InPrecision::Double($grid),
+            ) => $result,
+            _ => unreachable!("the workspace is of an engine of another precision"),
+        }
+    };
+}
+
+impl CpuEngine {
+    /// Prepares the engine at a rank of the lifted axis (1 to `receptor.full_rank()`), in the precision of the spectra.
+    pub fn new(plan: Arc<Plan>, receptor: &ReceptorSpectra, ligand: &Knots, rank: usize) -> Self {
+        let factors = receptor.factor(plan.modes());
+        Self::with_factors(plan, receptor, &factors, ligand, rank)
+    }
+
+    /// As [`Self::new`], with factors that are at hand.
+    pub(super) fn with_factors(
+        plan: Arc<Plan>,
+        receptor: &ReceptorSpectra,
+        factors: &Factors,
+        ligand: &Knots,
+        rank: usize,
+    ) -> Self {
+        let rank = rank.clamp(1, receptor.full_rank());
+        Self(in_precision!(&receptor.spectra, spectra => {
+            Transforms::new(plan, spectra, receptor.center, factors, ligand, rank)
+        }))
+    }
+
+    /// The engine that [`Self::new`] makes at a lower rank, to the bit: its first components are these.
+    #[must_use]
+    pub fn truncated(&self, rank: usize) -> Self {
+        Self(in_precision!(&self.0, transforms => transforms.truncated(rank)))
+    }
+
     /// The plan.
     pub fn plan(&self) -> &Plan {
-        &self.plan
+        of_precision!(&self.0, transforms => &transforms.plan)
+    }
+
+    /// Floating-point type of its transforms.
+    pub fn precision(&self) -> Precision {
+        self.0.precision()
     }
 
     /// Rank q of the lifted axis in use.
     pub fn rank(&self) -> usize {
-        self.forward.components()
+        of_precision!(&self.0, transforms => transforms.rank())
     }
 
     /// All singular values of the lifted axis as shares of the largest.
     pub fn singular(&self) -> &[f64] {
-        &self.singular
-    }
-
-    /// U of one column and component with kx rising.
-    #[cfg(feature = "gpu")]
-    pub(super) fn spectrum(
-        &self,
-        column: usize,
-        component: usize,
-    ) -> impl Iterator<Item = Complex<T>> + '_ {
-        let packets = &self.spectra[self.packing.range(column, self.rank())];
-        let (up, down) = packets.split_at(packets.len() / 2);
-        let value = move |half: &[Packet<T>], k: usize| {
-            half[k / LANES * self.rank() + component].get(k % LANES)
-        };
-        let side = self.plan.modes().columns[column].kx_max as usize;
-        let falling = (1..=side).rev().map(move |k| value(down, k));
-        falling.chain((0..=side).map(move |k| value(up, k)))
+        of_precision!(&self.0, transforms => &transforms.singular)
     }
 
     /// Turns that map the grid onto itself: the half-turns, and quarter turns where the box allows.
     pub fn turns(&self) -> &'static [GridTurn] {
-        &GridTurn::ALL[..self.readings.len()]
+        GridTurn::of(self.plan().modes())
     }
 
     /// Buffers for one rotation at a time.
-    pub fn workspace(&self) -> Workspace<T> {
+    pub fn workspace(&self) -> Workspace {
         self.workspace_of(1)
     }
 
     /// Buffers for so many images of a rotation together, [`TOGETHER`] at most.
-    pub fn workspace_of(&self, images: usize) -> Workspace<T> {
+    pub fn workspace_of(&self, images: usize) -> Workspace {
         let images = images.clamp(1, TOGETHER);
-        let [nx, ny, nz] = self.plan.modes().size;
-        let zero = Complex::new(T::zero(), T::zero());
-        let scratch = self
-            .inverse_x
-            .get_inplace_scratch_len()
-            .max(self.inverse_y.get_inplace_scratch_len())
-            .max(self.inverse_z.get_inplace_scratch_len());
+        let size = self.plan().size();
         Workspace {
-            forward: self.forward.workspace(),
-            points: vec![[0.0; 3]; self.ligand.len()],
-            lines: vec![zero; COLUMNS * self.forward.line_length() + 2 * LANES],
-            turned: vec![Packet::zero(); self.spectra.len()],
-            sums: vec![Packet::zero(); 2 * (nx / 2).div_ceil(LANES)],
-            product: vec![zero; images * 2 * SIDE * nx],
-            scratch: vec![zero; scratch],
-            planes: vec![zero; images * PLANES * nx * ny],
-            rows: vec![zero; images * nx * ny / 2 * nz],
+            buffers: in_precision!(&self.0, transforms => transforms.buffers(images)),
             images,
-            grid: vec![T::zero(); nx * ny * nz],
-            row_best: vec![T::zero(); nx * ny],
+            scores: ScoreGrid(in_precision!(&self.0, _ => Rows::new(size))),
         }
     }
 
     /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `turn` gave, in Å, in the
     /// box centred on the receptor, along the axes of the receptor's file.
     pub fn position_after(&self, turn: GridTurn, voxel: usize) -> Vector3<f64> {
-        let [_, ny, nz] = self.plan.modes().size;
-        let index = [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
-        // The block turns with the ligand in it.
-        let block_center = turn.apply(self.block_center);
-        let along_grid = Vector3::from([0, 1, 2].map(|axis| {
-            let length = self.plan.modes().lengths[axis];
-            let t = index[axis] as f64 * self.plan.spacing() + block_center[axis]
-                - self.receptor_center[axis];
-            t - length * (t / length + 0.5).floor()
-        }));
-        self.plan.frame().inverse() * along_grid
+        of_precision!(&self.0, transforms => transforms.position_after(turn, voxel))
     }
 
     /// [`Self::position_after`] no turn.
@@ -170,63 +141,49 @@ impl<T: Real> CpuEngine<T> {
         self.position_after(GridTurn::NONE, voxel)
     }
 
-    /// G over all translations at one rotation, into `work.grid`, and each row's best into `work.row_best`.
-    pub fn correlate(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
+    /// G over all translations at one rotation, into `work.scores`.
+    pub fn correlate(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace) {
         self.transform_ligand(rotation, work);
         self.correlate_turned(GridTurn::NONE, work);
     }
 
     /// Turns the ligand: its transform at `rotation`, which [`Self::correlate_each`] then reads for each turn of the grid.
-    pub fn transform_ligand(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace<T>) {
-        vectorized(
-            #[inline(always)]
-            || {
-                self.spread(rotation, work);
-                for component in 0..self.rank() {
-                    self.forward.planes(component, &mut work.forward);
-                    self.columns(component, work);
-                }
-            },
-        );
+    pub fn transform_ligand(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace) {
+        on_buffers!(self, work, (transforms, buffers, _grid) => {
+            transforms.transform_ligand(rotation, buffers)
+        });
     }
 
     /// G over all translations at the rotation last turned to, followed by each of `turns`, which must be of
-    /// [`Self::turns`]. One after the other is in `work.grid`, with each row's best in `work.row_best`, when `visit` is
-    /// called with its place among `turns`.
+    /// [`Self::turns`]. `visit` gets one grid after the other, with its place among `turns`.
     pub fn correlate_each(
         &self,
         turns: &[GridTurn],
-        work: &mut Workspace<T>,
-        mut visit: impl FnMut(usize, &mut Workspace<T>),
+        work: &mut Workspace,
+        visit: &mut dyn FnMut(usize, &mut ScoreGrid),
     ) {
         let together = work.images;
         for (group, turns) in turns.chunks(together).enumerate() {
-            vectorized(
-                #[inline(always)]
-                || self.multiply(turns, work),
-            );
+            on_buffers!(self, work, (transforms, buffers, _grid) => {
+                transforms.products(turns, buffers)
+            });
             for image in 0..turns.len() {
-                vectorized(
-                    #[inline(always)]
-                    || self.rows_to_grid(image, work),
-                );
-                visit(group * together + image, work);
+                on_buffers!(self, work, (transforms, buffers, grid) => {
+                    transforms.image(image, buffers, grid)
+                });
+                visit(group * together + image, &mut work.scores);
             }
         }
     }
 
     /// [`Self::correlate_each`] of one turn.
-    pub fn correlate_turned(&self, turn: GridTurn, work: &mut Workspace<T>) {
-        self.correlate_each(&[turn], work, |_, _| ());
+    pub fn correlate_turned(&self, turn: GridTurn, work: &mut Workspace) {
+        self.correlate_each(&[turn], work, &mut |_, _| ());
     }
 
     /// Time in seconds of each stage of one rotation and its images: spreading, forward planes, forward columns (these
     /// three serve all images), product with the inverse along x and y, and rows (both for one image).
-    pub fn stage_seconds(
-        &self,
-        rotation: &UnitQuaternion<f64>,
-        work: &mut Workspace<T>,
-    ) -> [f64; 5] {
+    pub fn stage_seconds(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace) -> [f64; 5] {
         let mut last = std::time::Instant::now();
         let mut lap = || {
             let now = std::time::Instant::now();
@@ -234,40 +191,26 @@ impl<T: Real> CpuEngine<T> {
             last = now;
             seconds
         };
-        vectorized(
-            #[inline(always)]
-            || self.spread(rotation, work),
-        );
-        let spread = lap();
-        let (mut planes, mut columns) = (0.0, 0.0);
-        for component in 0..self.rank() {
-            vectorized(
-                #[inline(always)]
-                || self.forward.planes(component, &mut work.forward),
-            );
-            planes += lap();
-            vectorized(
-                #[inline(always)]
-                || self.columns(component, work),
-            );
-            columns += lap();
-        }
-        let (mut product, mut rows) = (0.0, 0.0);
-        let count = self.turns().len();
-        for turns in self.turns().chunks(work.images) {
-            vectorized(
-                #[inline(always)]
-                || self.multiply(turns, work),
-            );
-            product += lap() / count as f64;
-            for image in 0..turns.len() {
-                vectorized(
-                    #[inline(always)]
-                    || self.rows_to_grid(image, work),
-                );
+        let mut seconds = [0.0; 5];
+        on_buffers!(self, work, (transforms, buffers, grid) => {
+            transforms.spread(rotation, buffers);
+            seconds[0] = lap();
+            for component in 0..transforms.rank() {
+                transforms.planes(component, buffers);
+                seconds[1] += lap();
+                transforms.columns(component, buffers);
+                seconds[2] += lap();
             }
-            rows += lap() / count as f64;
-        }
-        [spread, planes, columns, product, rows]
+            let count = self.turns().len() as f64;
+            for turns in self.turns().chunks(work.images) {
+                transforms.products(turns, buffers);
+                seconds[3] += lap() / count;
+                for image in 0..turns.len() {
+                    transforms.image(image, buffers, grid);
+                }
+                seconds[4] += lap() / count;
+            }
+        });
+        seconds
     }
 }

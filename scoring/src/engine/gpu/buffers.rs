@@ -2,8 +2,7 @@
 
 use super::device::{GpuDevice, GpuError};
 use crate::engine::columns::Reading;
-use crate::engine::cpu::CpuEngine;
-use crate::engine::traffic::StageSizes;
+use crate::engine::cpu::Transforms;
 use crate::transform::Real;
 use crate::transform::modes::place;
 use bytemuck::{Pod, Zeroable};
@@ -48,8 +47,8 @@ const MAX_TURNS: usize = 32;
 
 impl Sizes {
     /// Of an engine, with so many peaks an image that keep `reach` voxels free on each side.
-    pub fn new<T: Real>(engine: &CpuEngine<T>, peaks: usize, reach: usize) -> Self {
-        let plan = engine.plan();
+    pub fn new<T: Real>(engine: &Transforms<T>, peaks: usize, reach: usize) -> Self {
+        let plan = &engine.plan;
         let modes = plan.modes();
         let kernel = engine.forward.kernel();
         Self {
@@ -63,7 +62,7 @@ impl Sizes {
             depth: modes.planes.len(),
             columns: modes.columns.len(),
             modes: modes.count,
-            images: engine.turns().len(),
+            images: engine.readings.len(),
             longest: modes
                 .columns
                 .iter()
@@ -82,36 +81,26 @@ impl Sizes {
         self.peaks.min(voxels.div_ceil(of_peak))
     }
 
-    /// Sizes of the stages' results.
-    fn results(&self) -> StageSizes {
-        StageSizes {
-            grid: self.grid,
-            block: self.block,
-            components: self.fields,
-            depth: self.depth,
-            columns: self.columns,
-            modes: self.modes,
-            images: self.images,
-        }
-    }
-
-    /// Bytes of the peaks of an image.
-    fn peak_bytes(&self) -> usize {
-        8 * self.peaks
-    }
-
-    /// Bytes of each buffer that grows with the turns, for one, and of each that grows with the images.
+    /// Bytes of each buffer that grows with the turns, for one, and of each that grows with the images: the block, its
+    /// rows along z, its columns before the transform along x, the ligand's modes; then the product's columns, its
+    /// planes, the scores, the best of each row, the peaks.
     fn bytes(&self) -> ([usize; 4], [usize; 5]) {
-        let results = self.results();
-        let [along, rows, grid, row_best] = results.of_image(REAL);
-        let of_image = [along, rows, grid, row_best, self.peak_bytes()];
-        (results.of_turn(REAL), of_image)
-    }
-
-    /// Bytes that an image reads and writes at the least, its share of a turn's images included: every buffer
-    /// written once and read once, and the receptor's spectra read.
-    pub fn least_traffic(&self) -> u64 {
-        self.results().least_traffic(REAL, 1) + 2 * self.peak_bytes() as u64
+        const COMPLEX: usize = 2 * REAL;
+        let ([nx, ny, nz], [bx, by, bz]) = (self.grid, self.block);
+        let of_turn = [
+            REAL * self.fields * bx * by * bz,
+            COMPLEX * self.fields * bx * self.depth * by,
+            COMPLEX * self.fields * self.columns * bx,
+            COMPLEX * self.fields * self.modes,
+        ];
+        let of_image = [
+            COMPLEX * self.columns * nx,
+            COMPLEX * nx * self.depth * ny,
+            REAL * nx * ny * nz,
+            REAL * nx * ny,
+            8 * self.peaks,
+        ];
+        (of_turn, of_image)
     }
 
     /// The largest batch that takes at most `memory` bytes and fits the adapter's limits.
@@ -186,11 +175,11 @@ impl Buffers {
     /// Uploads what does not turn and makes room for a batch.
     pub fn new<T: Real>(
         gpu: &GpuDevice,
-        engine: &CpuEngine<T>,
+        engine: &Transforms<T>,
         sizes: &Sizes,
         batch: Batch,
     ) -> Result<Self, GpuError> {
-        let modes = engine.plan().modes();
+        let modes = engine.plan.modes();
         let mut planes: Vec<u32> = modes
             .planes
             .iter()
@@ -268,8 +257,8 @@ impl Buffers {
 }
 
 /// The columns of modes with their places on the grids.
-fn columns<T: Real>(engine: &CpuEngine<T>, sizes: &Sizes) -> Vec<Column> {
-    let modes = engine.plan().modes();
+fn columns<T: Real>(engine: &Transforms<T>, sizes: &Sizes) -> Vec<Column> {
+    let modes = engine.plan.modes();
     modes
         .columns
         .iter()
@@ -283,8 +272,8 @@ fn columns<T: Real>(engine: &CpuEngine<T>, sizes: &Sizes) -> Vec<Column> {
 }
 
 /// Where each image reads its columns: the first mode, and how ([`Reading::flags`]), `[image][column]`.
-fn readings<T: Real>(engine: &CpuEngine<T>) -> Vec<[u32; 2]> {
-    let columns = &engine.plan().modes().columns;
+fn readings<T: Real>(engine: &Transforms<T>) -> Vec<[u32; 2]> {
+    let columns = &engine.plan.modes().columns;
     let of = |reading: &Reading| {
         [
             columns[reading.column as usize].start as u32,
@@ -295,8 +284,8 @@ fn readings<T: Real>(engine: &CpuEngine<T>) -> Vec<[u32; 2]> {
 }
 
 /// The receptor's spectra in the units of the fields: `[column][field][mode of the column]`.
-fn spectra<T: Real>(engine: &CpuEngine<T>, units: &[f64]) -> Vec<[f32; 2]> {
-    let modes = engine.plan().modes();
+fn spectra<T: Real>(engine: &Transforms<T>, units: &[f64]) -> Vec<[f32; 2]> {
+    let modes = engine.plan.modes();
     let fields = engine.rank();
     let mut spectra = vec![[0f32; 2]; fields * modes.count];
     for (index, column) in modes.columns.iter().enumerate() {
@@ -316,7 +305,7 @@ fn spectra<T: Real>(engine: &CpuEngine<T>, units: &[f64]) -> Vec<[f32; 2]> {
 
 /// What one whole number of the spread block stands for in each field: all knots of a field on one point would reach
 /// 2^30.
-fn units<T: Real>(engine: &CpuEngine<T>) -> Vec<f64> {
+fn units<T: Real>(engine: &Transforms<T>) -> Vec<f64> {
     let fields = engine.rank();
     let mut sums = vec![0.0; fields];
     for weights in engine.weights.chunks_exact(fields) {

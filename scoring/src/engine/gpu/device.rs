@@ -1,7 +1,7 @@
 //! The graphics processor that is used, and what can go wrong with it.
 
 use std::sync::{Arc, Mutex, PoisonError};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 use thiserror::Error;
 
 /// Names part of an adapter's name, in any case, where several are there (as in other programs that use wgpu).
@@ -128,40 +128,6 @@ impl GpuDevice {
     /// Whether it is a program on the processor that plays a graphics card: right, and slow.
     pub fn is_software(&self) -> bool {
         self.info.device_type == wgpu::DeviceType::Cpu
-    }
-
-    /// Bytes a second that the card's memory reads and writes while it copies one buffer to another: the best of a few
-    /// copies.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] where the driver fails.
-    pub fn copy_bandwidth(&self) -> Result<f64, GpuError> {
-        const BYTES: u64 = 128 << 20;
-        const COPIES: u32 = 8;
-        const REPEATS: usize = 4;
-        let bytes = BYTES.min(self.device.limits().max_buffer_size);
-        let [from, to] = ["from", "to"].map(|label| {
-            self.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: bytes,
-                usage: wgpu::BufferUsages::COPY_SRC | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        });
-        let mut least = f64::INFINITY;
-        // The first copies also make the buffers.
-        for _ in 0..=REPEATS {
-            let mut encoder = self
-                .device
-                .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-            for _ in 0..COPIES {
-                encoder.copy_buffer_to_buffer(&from, 0, &to, 0, bytes);
-            }
-            let start = Instant::now();
-            self.wait(self.queue.submit([encoder.finish()]))?;
-            least = least.min(start.elapsed().as_secs_f64());
-        }
-        Ok(2.0 * f64::from(COPIES) * bytes as f64 / least)
     }
 
     /// Waits until a submission is done.

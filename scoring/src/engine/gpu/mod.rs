@@ -14,8 +14,9 @@ mod stages;
 
 pub use device::{ADAPTER_VARIABLE, GpuDevice, GpuError};
 
-use super::cpu::CpuEngine;
+use super::cpu::{CpuEngine, Transforms};
 use crate::grid_turn::GridTurn;
+use crate::precision::of_precision;
 use crate::transform::Real;
 use buffers::{Batch, Buffers, Sizes};
 use nalgebra::UnitQuaternion;
@@ -77,9 +78,19 @@ impl GpuEngine {
     ///
     /// # Errors
     /// [`GpuError`] where the grid does not fit the card or the driver fails.
-    pub fn new<T: Real>(
+    pub fn new(
         gpu: &GpuDevice,
-        engine: &CpuEngine<T>,
+        engine: &CpuEngine,
+        peaks: usize,
+        reach: usize,
+        memory: u64,
+    ) -> Result<Self, GpuError> {
+        of_precision!(&engine.0, transforms => Self::of(gpu, transforms, peaks, reach, memory))
+    }
+
+    fn of<T: Real>(
+        gpu: &GpuDevice,
+        engine: &Transforms<T>,
         peaks: usize,
         reach: usize,
         memory: u64,
@@ -96,20 +107,13 @@ impl GpuEngine {
             stages,
             scale: engine.forward.cells_per_length(),
             center: engine.forward.center(),
-            frame: engine.plan().frame(),
+            frame: engine.plan.frame(),
         })
     }
 
     /// Rotations that go through together, images counted.
     pub fn in_flight(&self) -> usize {
         self.batch.images
-    }
-
-    /// Bytes of the card's memory that a rotation reads and writes at the least: each stage's results once, and the
-    /// receptor's spectra. Over the time of a rotation and [`GpuDevice::copy_bandwidth`] it tells how far from its floor
-    /// the card works.
-    pub fn least_traffic(&self) -> u64 {
-        self.sizes.least_traffic()
     }
 
     /// The best voxels of every wanted image of every turn, in the order of the turns.
@@ -121,7 +125,7 @@ impl GpuEngine {
     pub fn best(
         &self,
         turns: &[Turn],
-        mut done: impl FnMut(usize),
+        done: &mut dyn FnMut(usize),
     ) -> Result<Vec<GridPeak>, GpuError> {
         let all: Vec<Image> = turns
             .iter()

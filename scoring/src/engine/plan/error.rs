@@ -43,7 +43,7 @@ pub enum PlanError {
 }
 
 /// Refuses knots that no engine can correlate: unusable ones, and weights that leave single precision.
-pub(in crate::engine) fn check_bodies(receptor: &Knots, ligand: &Knots) -> Result<(), PlanError> {
+pub(super) fn check_bodies(receptor: &Knots, ligand: &Knots) -> Result<(), PlanError> {
     for knots in [receptor, ligand] {
         knots.check()?;
         let size: f64 = knots.weights.iter().map(|c| c.abs()).sum();

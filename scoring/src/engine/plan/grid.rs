@@ -1,7 +1,7 @@
 //! The grid of a plan: spacing, spreading window, and a box that holds both bodies wherever they touch.
 
+use super::EngineOptions;
 use super::error::PlanError;
-use super::options::EngineOptions;
 use crate::kernel::product::peak_score_and_reach;
 use crate::kernel::table::Table;
 use crate::kernel::{Band, ProductKernel, RankingKernel};

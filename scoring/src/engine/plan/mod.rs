@@ -14,19 +14,16 @@
 mod error;
 mod frame;
 mod grid;
-mod options;
-mod pair_kernel;
-mod radii;
 
 use crate::kernel::product::{Body, LAYERS};
 use crate::kernel::table::Table;
-use crate::kernel::{Band, RankingKernel};
+use crate::kernel::{Band, KernelOptions, ProductKernel, RankingKernel};
 use crate::lifted_axis::{LiftedAxis, RadiusBasis};
 use crate::quantity::Quantity;
 use crate::terms::effect::{ActiveTerm, EffectKernel, Term};
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
-use error::{check_terms, check_tolerance, checked_spacing};
+use error::{check_bodies, check_terms, check_tolerance, checked_spacing};
 use frame::best_frame;
 use grid::{
     Extents, Widest, longest_reach, modes_at, oversampling, product_kernel, ranking_spacing,
@@ -34,16 +31,48 @@ use grid::{
 };
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
-use radii::Radii;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 pub use error::PlanError;
-pub(super) use error::check_bodies;
-pub use options::EngineOptions;
-pub use pair_kernel::PairKernel;
 
 /// Most by which the largest |G| is taken to exceed the best score more than usual: that of the largest lambda.
 const WIDEST_RANGE: f64 = 5e4;
+
+/// Share of the overlap of two coincident balls that must be left for them to count as resolved.
+const RESOLVED_SHARE: f64 = 0.1;
+
+/// Options of the engine: the kernel, and the parameters of the approximation.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EngineOptions {
+    /// The kernel that is correlated.
+    pub kernel: KernelOptions,
+    /// Grid spacing in Å; `None`: as the tolerance needs, resolution / 2 at most.
+    pub spacing: Option<f64>,
+    /// Error of the fast path that is aimed at, relative to the best score.
+    pub tolerance: f64,
+}
+
+impl Default for EngineOptions {
+    /// The kernel of `knotdock dock` on the grid that a tolerance of 1e-2 needs.
+    fn default() -> Self {
+        Self {
+            kernel: KernelOptions::default(),
+            spacing: None,
+            tolerance: 1e-2,
+        }
+    }
+}
+
+/// The function of two balls that a plan correlates.
+#[derive(Clone, Debug)]
+pub enum PairKernel {
+    /// The lifted cone at r + s + rho, low-passed and windowed: `Plan::kernel`.
+    Lifted,
+    /// The overlap of the two balls' bumps, whose transform factorises: no lifted axis is needed, radii meet as they
+    /// are.
+    Product(Box<ProductKernel>),
+}
 
 /// A planned correlation.
 #[derive(Clone, Debug)]
@@ -192,8 +221,8 @@ impl Plan {
         Self::with_effects(receptor, ligand, options, options.tolerance, Vec::new())
     }
 
-    /// Plans the correlation of shape and further terms, with the kernel of a tolerance as [`Plan::with_kernel_of`]
-    /// does.
+    /// Plans the correlation of shape and further terms with the kernel of another tolerance, whose window is part of its
+    /// definition: values compare with those of a coarser run of that tolerance.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -205,20 +234,6 @@ impl Plan {
         terms: Vec<Term>,
     ) -> Result<Self, PlanError> {
         Self::build(receptor, ligand, options, kernel_tolerance, None, terms)
-    }
-
-    /// Plans a correlation whose kernel is that of another tolerance, so that its values compare with those of a
-    /// coarser run: the kernel's window is part of its definition.
-    ///
-    /// # Errors
-    /// As [`Plan::new`].
-    pub fn with_kernel_of(
-        receptor: &Knots,
-        ligand: &Knots,
-        options: EngineOptions,
-        kernel_tolerance: f64,
-    ) -> Result<Self, PlanError> {
-        Self::with_effects(receptor, ligand, options, kernel_tolerance, Vec::new())
     }
 
     /// Plans the correlation of two sets of knots by the product kernel (`options.kernel.trim` has no meaning there).
@@ -461,6 +476,25 @@ impl Plan {
         }
     }
 
+    /// Indices of the knots that the planned correlation cannot resolve.
+    ///
+    /// The low-passed kernel scores every pair, but of balls much smaller than the resolution it sees little more than
+    /// points: the rest of their overlap falls like (radius / resolution)^3. The exact sum has the same low-pass, so no
+    /// error between the two shows it. These knots have less than a tenth of the overlap left if two of them coincide
+    /// (radii of 1.5 to 1.9 Å at a resolution of 4.5 Å have nine tenths or more). Without a low-pass their radius is
+    /// below the grid spacing.
+    pub fn unresolved(&self, knots: &Knots) -> Vec<usize> {
+        let is_lost = |radius: f64| match &self.pair {
+            PairKernel::Product(kernel) if kernel.band() == Band::Whole => radius < self.spacing,
+            _ => self.kernel.overlap_left(2.0 * radius) < RESOLVED_SHARE,
+        };
+        let (radii, classes) = knots.radius_classes();
+        let lost: Vec<bool> = radii.into_iter().map(is_lost).collect();
+        (0..knots.len())
+            .filter(|&index| lost[classes[index]])
+            .collect()
+    }
+
     /// Radial spectrum that couples function a of the receptor's shape with function b of the ligand's in a quantity, on
     /// all modes kept; `None` where it is zero.
     pub fn coupling(&self, fold: Quantity, (a, b): (usize, usize)) -> Option<Table<1>> {
@@ -476,6 +510,61 @@ impl Plan {
                 let layers = of_a.zip(of_b);
                 self.basis
                     .product_coupling(product, fold, (a, b), layers, w_max)
+            }
+        }
+    }
+}
+
+/// The distinct radii of both bodies, Å, each from the smallest to the largest.
+struct Radii {
+    receptor: Vec<f64>,
+    ligand: Vec<f64>,
+}
+
+impl Radii {
+    fn of(receptor: &Knots, ligand: &Knots) -> Self {
+        Self {
+            receptor: receptor.radius_classes().0,
+            ligand: ligand.radius_classes().0,
+        }
+    }
+
+    /// The smallest radius of the receptor and of the ligand, then the largest; zeros where there is none.
+    fn ends(&self) -> [f64; 4] {
+        let end = |radius: Option<&f64>| radius.copied().unwrap_or_default();
+        [
+            end(self.receptor.first()),
+            end(self.ligand.first()),
+            end(self.receptor.last()),
+            end(self.ligand.last()),
+        ]
+    }
+
+    /// The smallest and the largest sum of a receptor's and a ligand's radius.
+    fn sums(&self) -> (f64, f64) {
+        let [r_low, s_low, r_high, s_high] = self.ends();
+        (r_low + s_low, r_high + s_high)
+    }
+
+    /// The lifted axis, how radii meet it, and the largest relative error of that, `tolerance` at most. A product
+    /// kernel, whose frequencies end at `cut` per Å, has no use for the axis: that is the mean alone then.
+    fn meet(
+        self,
+        kernel: &RankingKernel,
+        pair: &PairKernel,
+        cut: f64,
+        tolerance: f64,
+    ) -> (LiftedAxis, RadiusBasis, f64) {
+        match pair {
+            PairKernel::Lifted => {
+                let (axis, error) = LiftedAxis::for_tolerance(kernel, tolerance);
+                let basis = RadiusBasis::choose(&axis, self.receptor, self.ligand);
+                (axis, basis, error)
+            }
+            PairKernel::Product(product) => {
+                let (basis, error) =
+                    RadiusBasis::for_product(product, self.receptor, self.ligand, cut, tolerance);
+                (LiftedAxis::new(kernel, 0), basis, error)
             }
         }
     }

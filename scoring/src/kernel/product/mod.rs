@@ -13,7 +13,7 @@
 //!
 //! B&I's affinity function (eq. 51) is F_S = i (f_{S+B0} - lambda f_S) on each body, with f_S = sum_i c_i psi_{r_i}(x -
 //! x_i) and the grown solid the same with radii r_i + r0. Its product with the other body's, i * i = -1 kept as their
-//! text needs it (see [`crate::affinity`]), is for each pair of knots
+//! text needs it, is for each pair of knots
 //!
 //! -lambda^2 (psi_r * psi_s) + lambda [(psi_{r+r0} * psi_s) + (psi_r * psi_{s+r0})] - (psi_{r+r0} * psi_{s+r0}).
 //!
@@ -36,9 +36,9 @@ mod tests;
 pub use knotdock_structures::ball_union::lens_volume;
 pub use pairs::peak_score_and_reach;
 
-use super::low_pass::smooth_step_down;
 use super::options::{KernelError, KernelOptions};
 use super::radial_transform::RadialTransform;
+use super::smooth_step_down;
 use super::table::Table;
 use crate::quantity::Quantity;
 use knotdock_structures::numeric::Bump;
@@ -204,29 +204,8 @@ impl ProductKernel {
         }
     }
 
-    /// A body's function of one ball of radius r at distance d from its centre, as a rasteriser writes it.
-    #[inline(always)]
-    pub fn density(&self, body: Body, radius: f64, distance: f64) -> f64 {
-        let grown = radius + self.options.offset;
-        match body {
-            Body::Solid => self.bump.value(distance / radius),
-            Body::Grown => self.bump.value(distance / grown),
-            Body::DoubleSkin => {
-                self.bump.value(distance / grown)
-                    - self.options.lambda * self.bump.value(distance / radius)
-            }
-        }
-    }
-
-    /// Radius in Å beyond which [`Self::density`] is 0.
-    pub fn density_reach(&self, body: Body, radius: f64) -> f64 {
-        match body {
-            Body::Solid => radius,
-            Body::Grown | Body::DoubleSkin => radius + self.options.offset,
-        }
-    }
-
-    /// Transform of [`Self::density`] at frequency w, in the unit of volumes; the low-pass is not in it.
+    /// Transform of a body's function of one ball of radius r at frequency w, in the unit of volumes; the low-pass is not
+    /// in it.
     pub fn spectrum(&self, body: Body, radius: f64, w: f64) -> f64 {
         let ball = |radius: f64| {
             let q = radius * w;

@@ -6,11 +6,9 @@
 //! name its sources. The radial function k is 1 up to 5 Å and falls to 0 at 7 Å with all derivatives continuous.
 
 use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
-use crate::kernel::low_pass::smooth_step_down;
-pub use crate::terms::potential_table::PotentialError;
-use crate::terms::potential_table::{built_in, end, table_lines};
-use crate::terms::weight::Weight;
-use knotdock_structures::Knots;
+use crate::kernel::smooth_step_down;
+use crate::terms::{Weight, built_in, end, table_lines, wrong};
+use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
 
 /// Definition of the effect.
@@ -120,8 +118,8 @@ impl Potential {
     /// order.
     ///
     /// # Errors
-    /// [`PotentialError`] with the line that has another form, or if the energies are not finite and symmetric.
-    pub fn parse(text: &str) -> Result<Self, PotentialError> {
+    /// [`Error`] with the line that has another form, or if the energies are not finite and symmetric.
+    pub fn parse(text: &str) -> Result<Self, Error> {
         let mut lines = table_lines(text);
         header(&mut lines, "")?;
         let potential = Self::parse_rows(&mut lines, "")?;
@@ -133,8 +131,7 @@ impl Potential {
     pub(crate) fn parse_rows<'a>(
         lines: &mut impl Iterator<Item = (usize, &'a str)>,
         prefix: &str,
-    ) -> Result<Self, PotentialError> {
-        let wrong = |line: usize, message: String| PotentialError { line, message };
+    ) -> Result<Self, Error> {
         let mut rows = Vec::new();
         let mut last = 1;
         for ((line, text), name) in lines.by_ref().take(TYPES.len()).zip(TYPES) {
@@ -146,7 +143,7 @@ impl Potential {
                 .ok_or_else(|| wrong(line, format!("this should be the row of {prefix}{name}")))?;
             let row: Result<Vec<f64>, _> =
                 fields.split(',').map(str::trim).map(str::parse).collect();
-            rows.push(row.map_err(|_| wrong(line, "an energy is not a number".to_owned()))?);
+            rows.push(row.map_err(|_| wrong(line, "an energy is not a number"))?);
         }
         rows.try_into().map_err(|message| wrong(last, message))
     }
@@ -166,18 +163,12 @@ impl Potential {
 pub(crate) fn header<'a>(
     lines: &mut impl Iterator<Item = (usize, &'a str)>,
     prefix: &str,
-) -> Result<(), PotentialError> {
+) -> Result<(), Error> {
     let expected = format!("{prefix}type,{}", TYPES.join(","));
     match lines.next() {
         Some((_, header)) if header.trim() == expected => Ok(()),
-        Some((line, _)) => Err(PotentialError {
-            line,
-            message: format!("the header is not `{expected}`"),
-        }),
-        None => Err(PotentialError {
-            line: 1,
-            message: "the table is empty".to_owned(),
-        }),
+        Some((line, _)) => Err(wrong(line, format!("the header is not `{expected}`"))),
+        None => Err(wrong(1, "the table is empty")),
     }
 }
 
@@ -222,7 +213,10 @@ mod tests {
 
     #[test]
     fn tables_that_are_none_are_refused_by_line() {
-        let line_of = |text: &str| Potential::parse(text).unwrap_err().line;
+        let line_of = |text: &str| {
+            let error = Potential::parse(text).unwrap_err();
+            error.line().unwrap() as usize
+        };
         assert_eq!(line_of(""), 1);
         assert_eq!(line_of("# x\ntype,A,B\n"), 2);
         let lines = TABLE.lines().count();

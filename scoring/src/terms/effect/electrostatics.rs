@@ -8,8 +8,8 @@
 //! to 0 from 6 to 12 Å with all derivatives continuous.
 
 use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
-use crate::kernel::low_pass::smooth_step_down;
-use crate::terms::weight::Weight;
+use crate::kernel::smooth_step_down;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the effect.

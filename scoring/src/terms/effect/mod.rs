@@ -23,10 +23,9 @@ mod kernel;
 pub mod restraint;
 pub mod shape;
 
-pub use kernel::EffectKernel;
-
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use contact::Potential;
+pub use kernel::EffectKernel;
 use knotdock_structures::Knots;
 use restraint::ResidueRole;
 use serde::{Deserialize, Serialize};

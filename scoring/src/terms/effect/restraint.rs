@@ -5,7 +5,7 @@
 //! without contacts of other atoms scores as without the effect.
 
 use super::{Effect, EffectDefinition, Label, Term, contact};
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the effect.

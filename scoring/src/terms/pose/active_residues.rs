@@ -7,11 +7,10 @@
 //! because a correlation can count nothing else. One buried residue with many contacts then earns as much as several
 //! should. So this term counts residues.
 
-use super::side::Side;
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
-use crate::blocks::Near;
+use super::bodies::{Sides, positions};
+use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
@@ -40,7 +39,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let sets = inputs.active_residues;
-        Box::new(ActiveResidues::new(receptor, ligand, sets, weight))
+        let term = ActiveResidues::new(receptor, ligand, sets, weight);
+        Box::new(move |pose, _| term.score(pose))
     },
 };
 
@@ -48,11 +48,10 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 pub type Residues = [Vec<Vec<usize>>; 2];
 
 /// Two bodies prepared for counting the active residues in contact.
-pub struct ActiveResidues {
+struct ActiveResidues {
     /// Sets of residues of receptor and ligand, each residue as the positions of its atoms (Å).
     sets: Vec<[Vec<Positions>; 2]>,
-    receptor: Side,
-    ligand: Side,
+    sides: Sides,
     weight: f64,
 }
 
@@ -61,51 +60,33 @@ type Positions = Vec<[f64; 3]>;
 
 impl ActiveResidues {
     /// Prepares two sets of knots. `weight` is the score of a pose in which all residues of one set are in contact.
-    pub fn new(receptor: &Knots, ligand: &Knots, sets: &[Residues], weight: f64) -> Self {
+    fn new(receptor: &Knots, ligand: &Knots, sets: &[Residues], weight: f64) -> Self {
         let of = |knots: &Knots, residues: &[Vec<usize>]| -> Vec<Positions> {
-            let centers = |residue: &Vec<usize>| {
-                let centers = residue.iter().filter_map(|&index| knots.centers.get(index));
-                centers.copied().collect()
-            };
-            residues.iter().map(centers).collect()
+            residues
+                .iter()
+                .map(|residue| positions(knots, residue))
+                .collect()
         };
         let sets = sets.iter();
         Self {
             sets: sets
                 .map(|[own, other]| [of(receptor, own), of(ligand, other)])
                 .collect(),
-            receptor: Side::new(receptor),
-            ligand: Side::new(ligand),
+            sides: Sides::new(receptor, ligand),
             weight,
         }
     }
 
     /// Weight times the share of a set's residues that are in contact at a pose, of the set with the largest share.
-    pub fn score(&self, pose: &Pose) -> f64 {
-        let inverse = pose.inverse();
+    fn score(&self, pose: &Pose) -> f64 {
         let shares = self.sets.iter().map(|[receptor, ligand]| {
-            let own = in_contact(&self.ligand, receptor, &inverse);
-            let other = in_contact(&self.receptor, ligand, pose);
-            (own + other) as f64 / (receptor.len() + ligand.len()).max(1) as f64
+            let count = self
+                .sides
+                .sum_in_contact([receptor, ligand], pose, |atoms| atoms, |_| 1.0);
+            count / (receptor.len() + ligand.len()).max(1) as f64
         });
         self.weight * shares.fold(0.0, f64::max)
     }
-}
-
-impl PoseTerm for ActiveResidues {
-    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
-        self.score(pose)
-    }
-}
-
-/// Number of residues of the other side with an atom in contact with `side`; `pose` carries them into its frame.
-fn in_contact(side: &Side, residues: &[Positions], pose: &Pose) -> usize {
-    let mut near = Near::default();
-    let mut touches = |atom: &[f64; 3]| side.touches(pose, *atom, &mut near);
-    let residues = residues.iter();
-    residues
-        .filter(|atoms| atoms.iter().any(&mut touches))
-        .count()
 }
 
 #[cfg(test)]

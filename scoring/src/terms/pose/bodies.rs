@@ -110,6 +110,100 @@ fn typed(
     (atoms.collect(), center)
 }
 
+/// Distance in Å within which two atoms are in contact, as in counts of native contacts.
+const TOUCHING: f64 = 5.0;
+
+/// All atoms of one side, relative to its centre.
+pub(super) struct Side {
+    atoms: Blocks,
+    /// Index of each atom, in the order of the blocks.
+    indices: Vec<usize>,
+    middle: Vector3<f64>,
+}
+
+impl Side {
+    pub fn new(knots: &Knots) -> Self {
+        let middle = center(knots);
+        let atoms = knots.centers.iter().map(|x| Vector3::from(*x) - middle);
+        let atoms = Blocks::new(&atoms.collect::<Vec<_>>());
+        Self {
+            indices: atoms.arranged(|index| index),
+            atoms,
+            middle,
+        }
+    }
+
+    /// Visits the indices of the atoms within `reach` (Å) of a point of the other side; `pose` carries the point into
+    /// this frame.
+    pub fn near(
+        &self,
+        pose: &Pose,
+        point: [f64; 3],
+        reach: f64,
+        near: &mut Near,
+        mut visit: impl FnMut(usize),
+    ) {
+        let x = (Vector3::from(pose.apply(point)) - self.middle).into();
+        self.atoms.list_near(&x, reach, near, |near| {
+            for (_, atom) in near.pairs() {
+                match self.indices.get(atom as usize) {
+                    Some(&index) => visit(index),
+                    None => debug_assert!(false, "an atom that is not there is near"),
+                }
+            }
+        });
+    }
+
+    /// Whether any of the atoms is in contact with an atom of the other side; `pose` carries the atom into this frame.
+    pub fn touches(&self, pose: &Pose, atom: [f64; 3], near: &mut Near) -> bool {
+        let mut touches = false;
+        self.near(pose, atom, TOUCHING, near, |_| touches = true);
+        touches
+    }
+}
+
+/// Both sides of a docking, for finding the atoms of each that are in contact.
+pub(super) struct Sides {
+    receptor: Side,
+    ligand: Side,
+}
+
+impl Sides {
+    pub fn new(receptor: &Knots, ligand: &Knots) -> Self {
+        Self {
+            receptor: Side::new(receptor),
+            ligand: Side::new(ligand),
+        }
+    }
+
+    /// Sum at a pose over the groups of atoms of receptor and ligand that are in contact with the other side, of a value
+    /// of each. The positions of a group's atoms are those of its own file (Å).
+    pub fn sum_in_contact<G>(
+        &self,
+        [of_receptor, of_ligand]: [&[G]; 2],
+        pose: &Pose,
+        atoms: impl Fn(&G) -> &[[f64; 3]],
+        value: impl Fn(&G) -> f64,
+    ) -> f64 {
+        let mut near = Near::default();
+        let mut sum = |side: &Side, groups: &[G], pose: &Pose| {
+            let mut touches = |atom: &[f64; 3]| side.touches(pose, *atom, &mut near);
+            let touching = groups
+                .iter()
+                .filter(|group| atoms(group).iter().any(&mut touches));
+            touching.fold(0.0, |sum, group| sum + value(group))
+        };
+        let inverse = pose.inverse();
+        sum(&self.ligand, of_receptor, &inverse) + sum(&self.receptor, of_ligand, pose)
+    }
+}
+
+/// Positions of some knots (Å); indices beyond them are left out.
+pub(super) fn positions(knots: &Knots, indices: &[usize]) -> Vec<[f64; 3]> {
+    let centers = indices.iter().filter_map(|&index| knots.centers.get(index));
+    centers.copied().collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

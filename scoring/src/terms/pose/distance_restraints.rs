@@ -7,9 +7,9 @@
 //! The penalty grows in proportion to the violation. A pose of the search may be 2 to 4 Å from the nearest sampled
 //! one, so that a penalty by squares would refuse poses for the coarseness of the search.
 
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
@@ -28,11 +28,12 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     count: |inputs| [inputs.distance_restraints.list.len(); 2],
     applies: |inputs| !inputs.distance_restraints.list.is_empty(),
     build: |inputs, weight| {
-        Box::new(RestraintPenalty {
+        let term = RestraintPenalty {
             restraints: inputs.distance_restraints.clone(),
             positions: inputs.bodies.map(|knots: &Knots| knots.centers.clone()),
             weight,
-        })
+        };
+        Box::new(move |pose, workspace| term.score(pose, &mut workspace.violations))
     },
 };
 
@@ -78,10 +79,9 @@ struct RestraintPenalty {
     weight: f64,
 }
 
-impl PoseTerm for RestraintPenalty {
-    fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64 {
+impl RestraintPenalty {
+    fn score(&self, pose: &Pose, violations: &mut Vec<f64>) -> f64 {
         let [receptor, ligand] = &self.positions;
-        let violations = &mut workspace.violations;
         violations.clear();
         violations.extend(self.restraints.list.iter().map(|restraint| {
             restraint.violation(restraint.effective_distance(receptor, ligand, pose))
@@ -91,6 +91,49 @@ impl PoseTerm for RestraintPenalty {
         // Without violations the score is 0, not -0.
         0.0 - self.weight * counted.sum::<f64>()
     }
+}
+
+impl DistanceRestraint {
+    /// Effective distance (sum of d^-6)^(-1/6) at a pose, in Å: 0 where two atoms coincide, infinite without pairs.
+    ///
+    /// Positions (Å) are those of all atoms of the receptor and of the ligand, each in its own file. An index without
+    /// a position is left out.
+    pub fn effective_distance(
+        &self,
+        receptor_positions: &[[f64; 3]],
+        ligand_positions: &[[f64; 3]],
+        pose: &Pose,
+    ) -> f64 {
+        let of_pair = |[receptor, ligand]: &[Vec<usize>; 2]| -> f64 {
+            let moved = ligand.iter().filter_map(|&atom| ligand_positions.get(atom));
+            let moved = moved.map(|&position| pose.apply(position));
+            let near = |place: [f64; 3]| -> f64 {
+                let receptor = receptor.iter();
+                let others = receptor.filter_map(|&atom| receptor_positions.get(atom));
+                others.map(|&other| inverse_sixth(place, other)).sum()
+            };
+            moved.map(near).sum()
+        };
+        let sum: f64 = self.pairs.iter().map(of_pair).sum();
+        sum.powf(-1.0 / 6.0)
+    }
+
+    /// Distance in Å by which an effective distance misses the bounds: 0 within them.
+    pub fn violation(&self, effective_distance: f64) -> f64 {
+        if effective_distance < self.lower {
+            self.lower - effective_distance
+        } else if effective_distance <= self.upper {
+            0.0
+        } else {
+            effective_distance - self.upper
+        }
+    }
+}
+
+/// d^-6 of two points.
+fn inverse_sixth(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let squared: f64 = (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum();
+    squared.powi(3).recip()
 }
 
 #[cfg(test)]
@@ -118,7 +161,7 @@ mod tests {
         };
         let at = |needed: usize, x: f64| {
             let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
-            term(needed).score(&pose, &mut Workspace::default())
+            term(needed).score(&pose, &mut Vec::new())
         };
         // At 0, 10 and 20 Å: 2 Å too near, 5 and 15 Å too far.
         for (needed, violation) in [(1, 2.0), (2, 7.0), (3, 22.0)] {
@@ -126,5 +169,88 @@ mod tests {
         }
         let satisfied = at(1, 3.0);
         assert!(satisfied == 0.0 && satisfied.is_sign_positive());
+    }
+}
+
+#[cfg(test)]
+mod effective_distance_tests {
+    use super::*;
+
+    fn restraint(pairs: &[[&[usize]; 2]]) -> DistanceRestraint {
+        let pairs = pairs.iter();
+        DistanceRestraint {
+            pairs: pairs.map(|sides| sides.map(<[usize]>::to_vec)).collect(),
+            lower: 2.0,
+            upper: 8.0,
+        }
+    }
+
+    /// The receptor's atoms at 3, 6 and -3 Å on x; the ligand's at the origin and far off.
+    fn distance(pairs: &[[&[usize]; 2]], pose: &Pose) -> f64 {
+        let receptor = [[3.0, 0.0, 0.0], [6.0, 0.0, 0.0], [-3.0, 0.0, 0.0]];
+        let ligand = [[0.0; 3], [0.0, 1e5, 0.0]];
+        restraint(pairs).effective_distance(&receptor, &ligand, pose)
+    }
+
+    fn assert_close(value: f64, expected: f64) {
+        assert!((value / expected - 1.0).abs() < 1e-14, "{value} {expected}");
+    }
+
+    #[test]
+    fn one_pair_gives_its_distance() {
+        let still = Pose::identity();
+        assert_close(distance(&[[&[0], &[0]]], &still), 3.0);
+        assert_close(distance(&[[&[1], &[0]]], &still), 6.0);
+    }
+
+    #[test]
+    fn equal_pairs_bring_it_down_by_the_sixth_root_of_their_number() {
+        let still = Pose::identity();
+        let expected = 3.0 * 2f64.powf(-1.0 / 6.0);
+        assert_close(distance(&[[&[0, 2], &[0]]], &still), expected);
+        // One set of two atoms, or two alternatives.
+        let alternatives: [[&[usize]; 2]; 2] = [[&[0], &[0]], [&[2], &[0]]];
+        assert_close(distance(&alternatives, &still), expected);
+        let eight = vec![[&[0usize] as &[usize], &[0]]; 64];
+        assert_close(distance(&eight, &still), 1.5);
+    }
+
+    /// 3^-6 + 6^-6 = 3^-6 (1 + 2^-6).
+    #[test]
+    fn unequal_pairs_add_their_inverse_sixth_powers() {
+        let expected = 3.0 * (65.0 / 64.0f64).powf(-1.0 / 6.0);
+        let still = Pose::identity();
+        assert_close(distance(&[[&[0, 1], &[0]]], &still), expected);
+        // What is far off hardly counts.
+        let far: [[&[usize]; 2]; 1] = [[&[0, 1], &[0, 1]]];
+        assert_close(distance(&far, &still), expected);
+    }
+
+    #[test]
+    fn the_pose_moves_the_ligand() {
+        let half = std::f64::consts::FRAC_PI_4;
+        // A quarter turn about z brings the far atom from y to -x.
+        let pose = Pose::from_parts([half.cos(), 0.0, 0.0, half.sin()], [1e5 - 1.0, 4.0, 0.0]);
+        let value = distance(&[[&[0], &[1]]], &pose);
+        assert!((value - 32f64.sqrt()).abs() < 1e-9, "{value}");
+        let moved = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [3.0, 0.0, 0.0]);
+        assert_eq!(distance(&[[&[0], &[0]]], &moved), 0.0);
+    }
+
+    #[test]
+    fn without_pairs_it_is_infinite() {
+        let still = Pose::identity();
+        assert_eq!(distance(&[], &still), f64::INFINITY);
+        assert_eq!(distance(&[[&[9], &[0]]], &still), f64::INFINITY);
+    }
+
+    #[test]
+    fn violations_are_what_is_missing_to_the_bounds() {
+        let restraint = restraint(&[]);
+        for (distance, expected) in [(0.5, 1.5), (2.0, 0.0), (5.0, 0.0), (8.0, 0.0), (9.5, 1.5)] {
+            assert_eq!(restraint.violation(distance), expected);
+        }
+        assert_eq!(restraint.violation(f64::INFINITY), f64::INFINITY);
+        assert!(restraint.violation(f64::NAN).is_nan());
     }
 }

@@ -14,11 +14,10 @@
 //! predictor sees are those that the contact potentials see. So the default weight is one that does no harm with a real
 //! predictor (docs/guides/known_residues.md, "Predictions").
 
-use super::side::Side;
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
-use crate::blocks::Near;
+use super::bodies::{Sides, positions};
+use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
@@ -39,9 +38,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let predicted = inputs.predicted;
-        Box::new(InterfacePredictions::new(
-            receptor, ligand, predicted, weight,
-        ))
+        let term = InterfacePredictions::new(receptor, ligand, predicted, weight);
+        Box::new(move |pose, _| term.score(pose))
     },
 };
 
@@ -55,17 +53,16 @@ pub struct PredictedResidue {
 }
 
 /// Two bodies prepared for the log-odds of the residues in contact.
-pub struct InterfacePredictions {
+struct InterfacePredictions {
     /// Positions of the atoms of each residue of receptor and ligand (Å), and its log-odds. Without those of no odds.
     residues: [Vec<(Vec<[f64; 3]>, f64)>; 2],
-    receptor: Side,
-    ligand: Side,
+    sides: Sides,
     weight: f64,
 }
 
 impl InterfacePredictions {
     /// Prepares two sets of knots. `weight` is the score of a nat.
-    pub fn new(
+    fn new(
         receptor: &Knots,
         ligand: &Knots,
         predicted: [&[PredictedResidue]; 2],
@@ -73,40 +70,28 @@ impl InterfacePredictions {
     ) -> Self {
         let of = |knots: &Knots, side: &[PredictedResidue]| {
             let counting = side.iter().filter(|residue| residue.log_odds != 0.0);
-            let positions = |residue: &PredictedResidue| {
-                let centers = residue.atoms.iter().filter_map(|&at| knots.centers.get(at));
-                (centers.copied().collect(), residue.log_odds)
-            };
-            counting.map(positions).collect()
+            counting
+                .map(|residue| (positions(knots, &residue.atoms), residue.log_odds))
+                .collect()
         };
         Self {
             residues: [of(receptor, predicted[0]), of(ligand, predicted[1])],
-            receptor: Side::new(receptor),
-            ligand: Side::new(ligand),
+            sides: Sides::new(receptor, ligand),
             weight,
         }
     }
 
     /// Weight times the log-odds of all residues in contact.
-    pub fn score(&self, pose: &Pose) -> f64 {
-        let mut near = Near::default();
-        let mut sum = |side: &Side, residues: &[(Vec<[f64; 3]>, f64)], pose: &Pose| -> f64 {
-            let mut touches = |atom: &[f64; 3]| side.touches(pose, *atom, &mut near);
-            let touching = residues
-                .iter()
-                .filter(|(atoms, _)| atoms.iter().any(&mut touches));
-            touching.map(|(_, log_odds)| log_odds).sum()
-        };
-        let [receptor, ligand] = &self.residues;
-        let odds = sum(&self.ligand, receptor, &pose.inverse()) + sum(&self.receptor, ligand, pose);
+    fn score(&self, pose: &Pose) -> f64 {
+        let residues = self.residues.each_ref().map(Vec::as_slice);
+        let odds = self.sides.sum_in_contact(
+            residues,
+            pose,
+            |(atoms, _)| atoms,
+            |(_, log_odds)| *log_odds,
+        );
         // Without residues the score is 0, not -0.
         0.0 + self.weight * odds
-    }
-}
-
-impl PoseTerm for InterfacePredictions {
-    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
-        self.score(pose)
     }
 }
 

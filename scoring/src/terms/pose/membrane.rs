@@ -3,9 +3,9 @@
 //! A membrane is a slab between two planes across the z axis of one side's file. The depth is the way along z after
 //! which no atom of the other side has its centre in the slab, and that whole side lies above or below.
 
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
@@ -26,12 +26,9 @@ pub(super) const TERM: TermDefinition = TermDefinition {
         let Some(&membrane) = inputs.membrane else {
             unreachable!("the term applies where there is a membrane");
         };
-        let other = inputs.bodies[1 - membrane.side];
-        Box::new(MembraneDepth {
-            membrane,
-            positions: other.centers.clone(),
-            weight,
-        })
+        // Positions of the side that is to stay out of it, in its own file (Å).
+        let positions = inputs.bodies[1 - membrane.side].centers.clone();
+        Box::new(move |pose, _| score(&membrane, &positions, weight, pose))
     },
 };
 
@@ -53,26 +50,17 @@ impl Membrane {
     }
 }
 
-/// A membrane and the side that is to stay out of it.
-struct MembraneDepth {
-    membrane: Membrane,
-    /// Positions of that side's atoms in its own file (Å).
-    positions: Vec<[f64; 3]>,
-    weight: f64,
-}
-
-impl PoseTerm for MembraneDepth {
-    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
-        let pose = match self.membrane.side {
-            0 => *pose,
-            _ => pose.inverse(),
-        };
-        let z = self.positions.iter().map(|at| pose.apply(*at)[2]);
-        let range = (f64::INFINITY, f64::NEG_INFINITY);
-        let (lowest, highest) = z.fold(range, |(low, high), z| (low.min(z), high.max(z)));
-        // Outside the score is 0, not -0.
-        0.0 - self.weight * self.membrane.depth(lowest, highest)
-    }
+/// Minus the weight times the depth of some positions (Å) at a pose.
+fn score(membrane: &Membrane, positions: &[[f64; 3]], weight: f64, pose: &Pose) -> f64 {
+    let pose = match membrane.side {
+        0 => *pose,
+        _ => pose.inverse(),
+    };
+    let z = positions.iter().map(|at| pose.apply(*at)[2]);
+    let range = (f64::INFINITY, f64::NEG_INFINITY);
+    let (lowest, highest) = z.fold(range, |(low, high), z| (low.min(z), high.max(z)));
+    // Outside the score is 0, not -0.
+    0.0 - weight * membrane.depth(lowest, highest)
 }
 
 #[cfg(test)]
@@ -82,18 +70,15 @@ mod tests {
     /// A rod of 6 Å along z, and a membrane from -10 to 15 Å.
     #[test]
     fn depth_is_the_shorter_way_out() {
-        let term = |side| MembraneDepth {
-            membrane: Membrane {
-                side,
-                low: -10.0,
-                high: 15.0,
-            },
-            positions: vec![[1.0, 2.0, -3.0], [0.0, 0.0, 3.0]],
-            weight: 2.0,
+        let membrane = |side| Membrane {
+            side,
+            low: -10.0,
+            high: 15.0,
         };
+        let positions = [[1.0, 2.0, -3.0], [0.0, 0.0, 3.0]];
         let at = |side, z: f64, quaternion| {
             let pose = Pose::from_parts(quaternion, [4.0, 0.0, z]);
-            term(side).score(&pose, &mut Workspace::default())
+            score(&membrane(side), &positions, 2.0, &pose)
         };
         let straight = [1.0, 0.0, 0.0, 0.0];
         for (z, depth) in [

@@ -21,45 +21,32 @@
 //!
 //! # Adding a term
 //!
-//! Write a file with a type that implements [`PoseTerm`] and a constant [`TermDefinition`], and add the constant to
+//! Write a file with a constant [`TermDefinition`], and add the constant to
 //! [`POSE_TERMS`]. Its weight option, its column in `poses.csv`, its JSON keys and its place in every report follow
 //! from the registry.
 
 mod active_residues;
 mod atom_pair;
-mod atom_pair_potential;
 mod bodies;
-mod distance_binned_potential;
 mod distance_restraints;
-mod effective_distance;
-mod energy_table;
 mod fine_contact;
 mod interface_predictions;
 mod membrane;
 mod relaxed;
-mod rescorer;
-mod side;
 mod termini;
 mod unresolved;
-mod values;
-
-pub use active_residues::{ActiveResidues, Residues};
-pub use atom_pair::AtomPairs;
-pub use atom_pair_potential::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
-pub use distance_binned_potential::{DistanceBinnedPotential, RANGES};
-pub use distance_restraints::{DistanceRestraint, DistanceRestraints};
-pub use fine_contact::FineContacts;
-pub use interface_predictions::{InterfacePredictions, PredictedResidue};
-pub use membrane::Membrane;
-pub use relaxed::{Relaxation, Relaxed, Workspace};
-pub use rescorer::Rescorer;
-pub use termini::TerminusContacts;
-pub use unresolved::UnresolvedClashes;
-pub use values::TermValues;
 
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
+pub use active_residues::Residues;
+pub use atom_pair::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
+pub use distance_restraints::{DistanceRestraint, DistanceRestraints};
+pub use fine_contact::{DistanceBinnedPotential, RANGES};
+pub use interface_predictions::PredictedResidue;
 use knotdock_structures::{Conformers, Knots};
+pub use membrane::Membrane;
+pub use relaxed::Workspace;
+use serde::{Serialize, Serializer};
 
 /// Every pose term, in the order of sums, columns and reports.
 pub const POSE_TERMS: &[TermDefinition] = &[
@@ -77,12 +64,9 @@ pub const POSE_TERMS: &[TermDefinition] = &[
 /// Time to score a pose by all terms but `relaxed`, as a share of the time by all terms. Measured on the example pair.
 const UNRELAXED: f64 = 0.25;
 
-/// A pose term prepared for two bodies.
-pub trait PoseTerm: Send + Sync {
-    /// Weighted value at a pose of the ligand; higher is better. Calls with one workspace allocate nothing once it
-    /// has grown.
-    fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64;
-}
+/// A pose term prepared for two bodies: its weighted value at a pose of the ligand; higher is better. Calls with one
+/// workspace allocate nothing once it has grown.
+pub type PoseTerm = Box<dyn Fn(&Pose, &mut Workspace) -> f64 + Send + Sync>;
 
 /// Definition of a pose term: its name, what it reads, and how it is prepared.
 #[derive(Debug)]
@@ -104,7 +88,7 @@ pub struct TermDefinition {
     /// Whether the inputs hold what it reads.
     pub applies: fn(&TermInputs) -> bool,
     /// Prepares it with a weight; called only if it applies.
-    pub build: fn(&TermInputs, f64) -> Box<dyn PoseTerm>,
+    pub build: fn(&TermInputs, f64) -> PoseTerm,
 }
 
 impl TermDefinition {
@@ -159,6 +143,87 @@ impl TermInputs<'_> {
     /// Whether both bodies carry atom kinds.
     fn has_atom_kinds(&self) -> bool {
         self.bodies.iter().all(|knots| !knots.atom_kinds.is_empty())
+    }
+}
+
+/// The pose terms that act between two bodies, prepared for scoring poses.
+pub struct Rescorer {
+    /// Each with its place in [`POSE_TERMS`].
+    terms: Vec<(usize, PoseTerm)>,
+}
+
+impl Rescorer {
+    /// Prepares every term that has a positive weight and inputs to read; `None` if no term has.
+    ///
+    /// `weights` holds one weight for each of [`POSE_TERMS`].
+    pub fn new(inputs: &TermInputs, weights: &[f64; POSE_TERMS.len()]) -> Option<Self> {
+        let terms: Vec<_> = POSE_TERMS
+            .iter()
+            .zip(weights)
+            .enumerate()
+            .filter(|(_, (term, weight))| term.acts(inputs, **weight))
+            .map(|(index, (term, weight))| (index, (term.build)(inputs, *weight)))
+            .collect();
+        (!terms.is_empty()).then_some(Self { terms })
+    }
+
+    /// Weighted values of the terms at a pose of the ligand. It allocates nothing once the workspace has grown.
+    pub fn score(&self, pose: &Pose, workspace: &mut Workspace) -> TermValues {
+        let mut values = TermValues::default();
+        for (index, term) in &self.terms {
+            values.set(*index, term(pose, workspace));
+        }
+        values
+    }
+}
+
+/// Weighted values of the pose terms at one pose; higher is better. A term that does not act has no value.
+///
+/// It serialises to a map from ids to values, with `null` for the terms that do not act.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct TermValues([Option<f64>; POSE_TERMS.len()]);
+
+impl TermValues {
+    /// Every term with its value, in the order of [`POSE_TERMS`].
+    pub fn iter(&self) -> impl Iterator<Item = (&'static TermDefinition, Option<f64>)> {
+        POSE_TERMS.iter().zip(self.0)
+    }
+
+    /// Value of the term with this id; `None` if the term does not act.
+    pub fn get(&self, id: &str) -> Option<f64> {
+        debug_assert!(TermDefinition::with_id(id).is_some(), "no pose term '{id}'");
+        let (_, value) = self.iter().find(|(term, _)| term.id == id)?;
+        value
+    }
+
+    /// Sets the value of the term at `index` of [`POSE_TERMS`].
+    pub(super) fn set(&mut self, index: usize, value: f64) {
+        self.0[index] = Some(value);
+    }
+
+    /// The same values, with one more or another by its id.
+    ///
+    /// # Panics
+    /// If no term has this id.
+    #[must_use]
+    pub fn with(mut self, id: &str, value: f64) -> Self {
+        let Some(index) = POSE_TERMS.iter().position(|term| term.id == id) else {
+            unreachable!("no pose term '{id}'");
+        };
+        self.set(index, value);
+        self
+    }
+
+    /// Sum of all values, in the order of [`POSE_TERMS`].
+    pub fn sum(&self) -> f64 {
+        let [first, others @ ..] = self.0.map(|value| value.unwrap_or(0.0));
+        others.into_iter().fold(first, |sum, value| sum + value)
+    }
+}
+
+impl Serialize for TermValues {
+    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
+        to.collect_map(self.iter().map(|(term, value)| (term.id, value)))
     }
 }
 
@@ -261,5 +326,35 @@ mod tests {
             assert_eq!(alone, TermValues::default().with(term.id, alone.sum()));
             assert!((alone.sum() - 2.0 * value.unwrap()).abs() < 1e-12);
         }
+    }
+}
+
+#[cfg(test)]
+mod values_tests {
+    use super::*;
+
+    /// Sums run in the order of the registry, so that every table holds the same digits.
+    #[test]
+    fn values_add_up_in_the_order_of_the_registry() {
+        let numbers = [1e16, 1.0, -1e16, 0.5, 0.25, 0.125, 0.0625];
+        let values = POSE_TERMS
+            .iter()
+            .zip(numbers)
+            .fold(TermValues::default(), |values, (term, number)| {
+                values.with(term.id, number)
+            });
+        // 1e16 + 1 rounds to 1e16.
+        assert_eq!(values.sum(), 0.9375);
+        assert_eq!(TermValues::default().sum(), 0.0);
+    }
+
+    #[test]
+    fn values_are_found_by_id() {
+        let id = POSE_TERMS[1].id;
+        let values = TermValues::default().with(id, -2.5);
+        assert_eq!(values.get(id), Some(-2.5));
+        let mut others = POSE_TERMS.iter().filter(|term| term.id != id);
+        assert!(others.all(|term| values.get(term.id).is_none()));
+        assert_eq!(values.sum(), -2.5);
     }
 }

@@ -2,11 +2,10 @@
 //!
 //! These residues are flexible. Their positions in a file are one sample of many, so contacts with them say little.
 
-use super::side::Side;
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
-use crate::blocks::Near;
+use super::bodies::{Sides, positions};
+use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
@@ -27,60 +26,42 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let termini = inputs.termini;
-        Box::new(TerminusContacts::new(receptor, ligand, termini, weight))
+        let term = TerminusContacts::new(receptor, ligand, termini, weight);
+        Box::new(move |pose, _| term.score(pose))
     },
 };
 
 /// Two bodies prepared for counting the atoms near termini that are in contact.
-pub struct TerminusContacts {
+struct TerminusContacts {
     /// Positions of the atoms near termini of receptor and ligand, each in its own frame (Å).
     termini: [Vec<[f64; 3]>; 2],
-    receptor: Side,
-    ligand: Side,
+    sides: Sides,
     weight: f64,
 }
 
 impl TerminusContacts {
     /// Prepares two sets of knots. `termini` holds the indices of the knots near termini, and `weight` is the cost of
     /// one in contact.
-    pub fn new(receptor: &Knots, ligand: &Knots, termini: [&[usize]; 2], weight: f64) -> Self {
-        let positions = |knots: &Knots, near: &[usize]| {
-            let centers = near.iter().filter_map(|&index| knots.centers.get(index));
-            centers.copied().collect()
-        };
+    fn new(receptor: &Knots, ligand: &Knots, termini: [&[usize]; 2], weight: f64) -> Self {
         Self {
             termini: [
                 positions(receptor, termini[0]),
                 positions(ligand, termini[1]),
             ],
-            receptor: Side::new(receptor),
-            ligand: Side::new(ligand),
+            sides: Sides::new(receptor, ligand),
             weight,
         }
     }
 
     /// Minus the weight times the number of atoms near termini that are in contact with the other side.
-    pub fn score(&self, pose: &Pose) -> f64 {
-        let [receptor, ligand] = &self.termini;
-        let inverse = pose.inverse();
-        let atoms =
-            in_contact(&self.ligand, receptor, &inverse) + in_contact(&self.receptor, ligand, pose);
+    fn score(&self, pose: &Pose) -> f64 {
+        let atoms = self.termini.each_ref().map(Vec::as_slice);
+        let count = self
+            .sides
+            .sum_in_contact(atoms, pose, std::slice::from_ref, |_| 1.0);
         // Without atoms the score is 0, not -0.
-        0.0 - self.weight * atoms as f64
+        0.0 - self.weight * count
     }
-}
-
-impl PoseTerm for TerminusContacts {
-    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
-        self.score(pose)
-    }
-}
-
-/// Number of atoms of the other side in contact with `side`; `pose` carries them into its frame.
-fn in_contact(side: &Side, atoms: &[[f64; 3]], pose: &Pose) -> usize {
-    let mut near = Near::default();
-    let touches = |atom: &&[f64; 3]| side.touches(pose, **atom, &mut near);
-    atoms.iter().filter(touches).count()
 }
 
 #[cfg(test)]

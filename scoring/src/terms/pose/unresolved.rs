@@ -5,12 +5,12 @@
 //! nothing in favour of a pose. For that reason unresolved residues are no part of shape, where their skins would
 //! earn.
 
-use super::side::Side;
-use super::{PoseTerm, TermDefinition, UNRELAXED, Workspace};
+use super::bodies::Side;
+use super::{TermDefinition, UNRELAXED};
 use crate::blocks::Near;
 use crate::rigid_move::center;
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::{Conformers, Knots};
 use nalgebra::{Matrix3, Vector3};
 
@@ -33,7 +33,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let segments = inputs.unresolved;
-        Box::new(UnresolvedClashes::new(receptor, ligand, segments, weight))
+        let term = UnresolvedClashes::new(receptor, ligand, segments, weight);
+        Box::new(move |pose, _| term.score(pose))
     },
 };
 
@@ -44,7 +45,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 const REACH: f64 = 5.0;
 
 /// Two bodies prepared for charging clashes with unresolved segments.
-pub struct UnresolvedClashes {
+struct UnresolvedClashes {
     /// Segments of receptor and ligand.
     segments: [Vec<Occupancy>; 2],
     receptor: Body,
@@ -103,12 +104,6 @@ impl UnresolvedClashes {
             + clashes(&self.receptor, ligand, &inverse, pose);
         // Without clashes the score is 0, not -0.
         0.0 - self.weight * clashes
-    }
-}
-
-impl PoseTerm for UnresolvedClashes {
-    fn score(&self, pose: &Pose, _: &mut Workspace) -> f64 {
-        self.score(pose)
     }
 }
 

@@ -1,16 +1,15 @@
 //! Points to modes: spreading and the transforms of the fine grid, plane by plane.
 
 use super::super::Real;
-use super::spread::Weight;
 use super::{FIRST_GROUP, GROUP, Plan, SortedPoints, Workspace, place};
 use num_complex::Complex;
 
 impl<T: Real, const D: usize> Plan<T, D> {
     #[inline(always)]
-    pub(super) fn run_forward<W: Weight<T, PARTS>, const PARTS: usize>(
+    pub(super) fn run_forward(
         &self,
         points: &SortedPoints<D>,
-        weights: &[W],
+        weights: &[Complex<T>],
         work: &mut Workspace<T, D>,
         output: &mut [Complex<T>],
     ) {
@@ -23,23 +22,23 @@ impl<T: Real, const D: usize> Plan<T, D> {
         for slab in 0..points.slabs.len().saturating_sub(1) {
             let range = points.slabs[slab]..points.slabs[slab + 1];
             if !range.is_empty() {
-                W::spread(self, points, range, weights, work);
+                self.spread_by_width(points, range, weights, work);
             }
             let complete = ((slab + 1) * self.grid.slab).min(fine);
             for plane in done..complete {
-                self.plane_to_modes::<PARTS>(plane, work);
+                self.plane_to_modes(plane, work);
             }
             done = done.max(complete);
         }
         for plane in 0..waiting {
-            self.plane_to_modes::<PARTS>(plane, work);
+            self.plane_to_modes(plane, work);
         }
         self.first_axis_to_modes(work, output);
     }
 
     /// Transforms a finished plane along its own axes into `middle`, and clears it.
     #[inline(always)]
-    fn plane_to_modes<const PARTS: usize>(&self, plane: usize, work: &mut Workspace<T, D>) {
+    fn plane_to_modes(&self, plane: usize, work: &mut Workspace<T, D>) {
         let (fine, modes) = (&self.grid.fine, &self.modes);
         let Workspace {
             ring,
@@ -67,8 +66,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
                 .chunks_exact_mut(length)
                 .zip(values.chunks_exact_mut(*row))
             {
-                let values = &mut values[..PARTS * (*row / 2)];
-                vacant &= gather::<T, PARTS>(values, line);
+                vacant &= gather(values, line);
                 values.fill(T::zero());
             }
             let lines = &mut lines[..count * length];
@@ -205,26 +203,17 @@ impl<T: Real, const D: usize> Plan<T, D> {
 
 /// Copies a row, its padding wrapped around the period, into a line; returns whether all of it is zero.
 #[inline(always)]
-fn gather<T: Real, const PARTS: usize>(values: &[T], line: &mut [Complex<T>]) -> bool {
+fn gather<T: Real>(values: &[T], line: &mut [Complex<T>]) -> bool {
     let length = line.len();
     let mut vacant = true;
-    let (body, tail) = values.split_at(PARTS * length);
-    let number = |value: &[T]| {
-        Complex::new(
-            value[0],
-            if PARTS == 2 {
-                value[PARTS - 1]
-            } else {
-                T::zero()
-            },
-        )
-    };
-    for (target, value) in line.iter_mut().zip(body.chunks_exact(PARTS)) {
+    let (body, tail) = values.split_at(2 * length);
+    let number = |value: &[T]| Complex::new(value[0], value[1]);
+    for (target, value) in line.iter_mut().zip(body.chunks_exact(2)) {
         *target = number(value);
         vacant &= target.re == T::zero() && target.im == T::zero();
     }
     // A short axis may be narrower than the lanes of a window, which then hold zeros.
-    for (value, index) in tail.chunks_exact(PARTS).zip((0..length).cycle()) {
+    for (value, index) in tail.chunks_exact(2).zip((0..length).cycle()) {
         let value = number(value);
         line[index] = line[index] + value;
         vacant &= value.re == T::zero() && value.im == T::zero();

@@ -44,21 +44,16 @@
 //! ```
 
 mod adjoint;
-mod error;
 mod execute;
 mod forward;
-mod interpolate;
 mod plan;
 mod sorted_points;
 mod spread;
-mod vectorized;
 mod window;
-mod workspace;
 
-pub use error::{PlanError, TransformError};
-pub use plan::Plan;
+pub use execute::Workspace;
+pub use plan::{Plan, PlanError, TransformError};
 pub use sorted_points::SortedPoints;
-pub use workspace::Workspace;
 
 /// Lines that are transformed together: their transposed writes then fill whole cache lines.
 const GROUP: usize = 8;

@@ -30,7 +30,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// Fills `footprint` with the window on axis 0 and the axes from 3 on, and returns its rest.
     #[inline(always)]
     #[allow(clippy::needless_range_loop)] // `lane` counts from the window's first point
-    pub(super) fn stencil<const LANES: usize, const PARTS: usize>(
+    pub(super) fn stencil<const LANES: usize>(
         &self,
         low: &[f64; D],
         slots: &[usize],
@@ -70,25 +70,47 @@ impl<T: Real, const D: usize> Plan<T, D> {
         }
         let (first, along) = self.on_axis(low, 1);
         Stencil {
-            start: PARTS * first,
+            start: 2 * first,
             along,
             rows,
         }
     }
 
-    /// Adds the sorted points `range` to the ring. `PARTS` numbers make a weight; `NUMBERS` = `PARTS` x `LANES`.
+    /// Adds the sorted points `range` to the workspace's ring, by the kernel for the window's width, rounded up to even.
     #[inline(always)]
-    #[allow(clippy::too_many_arguments, clippy::needless_range_loop)]
-    pub(super) fn spread<
-        W: Weight<T, PARTS>,
-        const LANES: usize,
-        const PARTS: usize,
-        const NUMBERS: usize,
-    >(
+    pub(super) fn spread_by_width(
         &self,
         points: &SortedPoints<D>,
         range: std::ops::Range<usize>,
-        weights: &[W],
+        weights: &[Complex<T>],
+        work: &mut Workspace<T, D>,
+    ) {
+        let Workspace {
+            slots,
+            footprint,
+            ring,
+            row,
+            ..
+        } = work;
+        macro_rules! with_lanes {
+            ($($lanes:literal)*) => {
+                match self.window.width.next_multiple_of(2) {
+                    $($lanes => self.spread::<$lanes, { 2 * $lanes }>(points, range, weights, slots, *row, footprint, ring),)*
+                    _ => unreachable!("a plan's windows are 2 to {MAX_WIDTH} points wide"),
+                }
+            };
+        }
+        with_lanes!(2 4 6 8 10 12 14 16);
+    }
+
+    /// Adds the sorted points `range` to the ring. `NUMBERS` = 2 x `LANES`.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    fn spread<const LANES: usize, const NUMBERS: usize>(
+        &self,
+        points: &SortedPoints<D>,
+        range: std::ops::Range<usize>,
+        weights: &[Complex<T>],
         slots: &[usize],
         row: usize,
         footprint: &mut Vec<(usize, T)>,
@@ -96,13 +118,12 @@ impl<T: Real, const D: usize> Plan<T, D> {
     ) {
         let height = self.grid.widths[2];
         for (low, &index) in points.low[range.clone()].iter().zip(&points.order[range]) {
-            let stencil = self.stencil::<LANES, PARTS>(low, slots, row, footprint);
-            let weight = weights[index as usize].parts();
+            let stencil = self.stencil::<LANES>(low, slots, row, footprint);
+            let weight = weights[index as usize];
             let mut line = [T::zero(); NUMBERS];
             for lane in 0..LANES {
-                for part in 0..PARTS {
-                    line[PARTS * lane + part] = weight[part] * stencil.along[lane];
-                }
+                line[2 * lane] = weight.re * stencil.along[lane];
+                line[2 * lane + 1] = weight.im * stencil.along[lane];
             }
             for &(offset, share) in footprint.iter() {
                 for &(place, value) in &stencil.rows[..height] {
@@ -119,63 +140,47 @@ impl<T: Real, const D: usize> Plan<T, D> {
     }
 }
 
-/// A weight, real or complex, as the `PARTS` numbers that make it.
-pub(super) trait Weight<T: Real, const PARTS: usize>: Copy {
-    /// Real part, then imaginary part if there is one.
-    fn parts(self) -> [T; PARTS];
-
-    /// Adds the sorted points `range` to the workspace's ring.
-    fn spread<const D: usize>(
-        plan: &Plan<T, D>,
-        points: &SortedPoints<D>,
-        range: std::ops::Range<usize>,
-        weights: &[Self],
-        work: &mut Workspace<T, D>,
-    );
-}
-
-/// The method `spread` by the kernel for the window's width, rounded up to even.
-macro_rules! spread_by_width {
-    ($parts:literal: $($lanes:literal)*) => {
-        #[inline(always)]
-        fn spread<const D: usize>(
-            plan: &Plan<T, D>,
-            points: &SortedPoints<D>,
-            range: std::ops::Range<usize>,
-            weights: &[Self],
-            work: &mut Workspace<T, D>,
-        ) {
-            let Workspace { slots, footprint, ring, row, .. } = work;
-            match plan.window.width.next_multiple_of(2) {
-                $($lanes => plan.spread::<Self, $lanes, $parts, { $parts * $lanes }>(
-                    points, range, weights, slots, *row, footprint, ring,
-                ),)*
-                _ => unreachable!("a plan's windows are 2 to {MAX_WIDTH} points wide"),
-            }
-        }
-    };
-}
-
-impl<T: Real> Weight<T, 1> for T {
-    #[inline(always)]
-    fn parts(self) -> [T; 1] {
-        [self]
-    }
-
-    spread_by_width!(1: 2 4 6 8 10 12 14 16);
-}
-
-impl<T: Real> Weight<T, 2> for Complex<T> {
-    #[inline(always)]
-    fn parts(self) -> [T; 2] {
-        [self.re, self.im]
-    }
-
-    spread_by_width!(2: 2 4 6 8 10 12 14 16);
-}
-
 /// An index that runs less than once around the period.
 #[inline(always)]
 fn wrap(index: usize, size: usize) -> usize {
     if index >= size { index - size } else { index }
+}
+
+impl<T: Real, const D: usize> Plan<T, D> {
+    /// Reads the values of the sorted points `range` off the ring. `NUMBERS` = 2 x `LANES`.
+    #[inline(always)]
+    #[allow(clippy::too_many_arguments)]
+    pub(super) fn interpolate<const LANES: usize, const NUMBERS: usize>(
+        &self,
+        points: &SortedPoints<D>,
+        range: std::ops::Range<usize>,
+        slots: &[usize],
+        row: usize,
+        footprint: &mut Vec<(usize, T)>,
+        ring: &[T],
+        values: &mut [Complex<T>],
+    ) {
+        let height = self.grid.widths[2];
+        for (low, &index) in points.low[range.clone()].iter().zip(&points.order[range]) {
+            let stencil = self.stencil::<LANES>(low, slots, row, footprint);
+            let mut sums = [T::zero(); NUMBERS];
+            for &(offset, share) in footprint.iter() {
+                for &(place, value) in &stencil.rows[..height] {
+                    let factor = share * value;
+                    let start = offset + place + stencil.start;
+                    if let Some(source) = ring[start..].first_chunk::<NUMBERS>() {
+                        for (sum, part) in sums.iter_mut().zip(source) {
+                            *sum += factor * *part;
+                        }
+                    }
+                }
+            }
+            let mut total = Complex::new(T::zero(), T::zero());
+            for lane in 0..LANES {
+                total.re += sums[2 * lane] * stencil.along[lane];
+                total.im += sums[2 * lane + 1] * stencil.along[lane];
+            }
+            values[index as usize] = total;
+        }
+    }
 }

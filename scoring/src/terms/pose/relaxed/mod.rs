@@ -8,24 +8,20 @@
 //! The score is continuous in the atoms and the pose: noise changes it in proportion. Receptor and ligand may be
 //! exchanged.
 
-mod descent;
 mod list;
 #[cfg(test)]
 mod tests;
 
-use self::descent::{LONGEST, Slope};
 pub use self::list::Workspace;
 use self::list::{Atoms, Interface, Site};
-use super::atom_pair_potential::AtomPairPotential;
-use super::energy_table::{EnergyTable, SMOOTH_REACH};
-use super::{PoseTerm, TermDefinition};
+use super::TermDefinition;
+use super::atom_pair::{AtomPairPotential, EnergyTable, SMOOTH_REACH};
 use crate::blocks::Blocks;
-use crate::rigid_move::Move;
-use crate::rigid_move::center;
+use crate::rigid_move::{Derivatives, Move, center};
 use crate::se3::Pose;
-use crate::terms::weight::Weight;
+use crate::terms::Weight;
 use knotdock_structures::Knots;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::{Matrix3, Vector3, Vector6};
 use pulp::{Arch, Simd, WithSimd};
 
 /// Definition of the term.
@@ -47,7 +43,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     build: |inputs, weight| {
         let [receptor, ligand] = inputs.bodies;
         let potential = inputs.atom_pair_potential.cloned().unwrap_or_default();
-        Box::new(Relaxation::new(receptor, ligand, &potential, weight))
+        let term = Relaxation::new(receptor, ligand, &potential, weight);
+        Box::new(move |pose, workspace| term.score(pose, workspace))
     },
 };
 
@@ -73,7 +70,7 @@ const HYDROGEN: f64 = 1.15;
 /// E_ab is the atom pair potential as [`super::AtomPairs`] reads it; atoms without a kind only repel. The pose
 /// descends by less than 2 Å on a smooth energy of a quarter of that stiffness, to E(end). Its score is
 /// `-weight min(E(start), E(end))`.
-pub struct Relaxation {
+pub(super) struct Relaxation {
     atoms: Atoms,
     energies: EnergyTable,
     weight: f64,
@@ -81,17 +78,11 @@ pub struct Relaxation {
 
 /// A relaxed pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Relaxed {
+pub(super) struct Relaxed {
     /// The pose after the descent, or the original one if that is no worse.
     pub pose: Pose,
     /// Its energy in RT; lower is better.
     pub energy: f64,
-}
-
-impl PoseTerm for Relaxation {
-    fn score(&self, pose: &Pose, workspace: &mut Workspace) -> f64 {
-        self.score(pose, workspace)
-    }
 }
 
 impl Relaxation {
@@ -134,6 +125,7 @@ impl Relaxation {
     }
 
     /// Energy of a pose as it stands in RT.
+    #[cfg(test)]
     pub fn energy(&self, pose: &Pose) -> f64 {
         let (start, none) = (self.atoms.start(pose), Move::none());
         let mut workspace = Workspace::default();
@@ -358,4 +350,62 @@ fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f6
             (position, Site { radius, kind })
         })
         .collect()
+}
+
+/// Longest steps in Å, one after the other; their sum bounds the whole move.
+///
+/// The length of a step is the root of the squares of the shift and of the arc at the interface's radius.
+pub(super) const LONGEST: [f64; 6] = [0.7, 0.455, 0.296, 0.192, 0.125, 0.081];
+/// Damping of a step in RT/Å²: a part for each contact and a constant. It stands for the curvature of the atom pair
+/// potential, which has either sign.
+const DAMPING: [f64; 2] = [0.05, 2.0];
+
+/// Derivatives of the energy of a move, and its contacts.
+pub(super) struct Slope {
+    /// Derivatives; the curvature is that of the overlaps along the lines between their atoms: positive semidefinite.
+    pub by_step: Derivatives,
+    /// Number of contacts, by a smooth weight.
+    pub contacts: f64,
+}
+
+impl Slope {
+    /// Slope of nothing.
+    pub fn zero() -> Self {
+        Self {
+            by_step: Derivatives::zero(),
+            contacts: 0.0,
+        }
+    }
+
+    /// Adds an atom at `arm`, with the gradient and curvature by its position.
+    #[inline(always)]
+    pub fn add(&mut self, arm: &Vector3<f64>, gradient: &Vector3<f64>, curvature: &Matrix3<f64>) {
+        self.by_step.push(gradient, &arm.cross(gradient));
+        self.by_step.curve(arm, curvature);
+    }
+
+    /// The move after a step downhill from `at`, shorter than `longest` (Å), at an interface of `radius` (Å).
+    pub fn step(&self, at: &Move, radius: f64, longest: f64) -> Move {
+        let arc = 1.0 / radius;
+        let scale = Vector6::new(1.0, 1.0, 1.0, arc, arc, arc);
+        let mut matrix = self
+            .by_step
+            .curvature
+            .component_mul(&(scale * scale.transpose()));
+        let damping = DAMPING[0] * self.contacts + DAMPING[1];
+        for axis in 0..6 {
+            matrix[(axis, axis)] += damping;
+        }
+        // Positive definite unless a number is not finite.
+        let Some(factors) = matrix.cholesky() else {
+            return *at;
+        };
+        let step = -factors.solve(&self.by_step.gradient.component_mul(&scale));
+        let step = step / (1.0 + step.norm_squared() / (longest * longest)).sqrt();
+        let step = step.component_mul(&scale);
+        at.then_by_halves(
+            step.fixed_rows::<3>(0).into(),
+            step.fixed_rows::<3>(3).into(),
+        )
+    }
 }

@@ -1,7 +1,7 @@
 //! Energies against the definition, slopes against differences, and where descents end, with and without noise.
 
 use super::*;
-use crate::terms::pose::AtomPairs;
+use crate::terms::pose::atom_pair::AtomPairs;
 use crate::test_support::Numbers;
 
 /// Atoms of all kinds on a jittered lattice within a ball, at least 2.4 Å from each other.

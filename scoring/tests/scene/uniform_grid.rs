@@ -1,4 +1,4 @@
-//! The uniform-grid baseline: rasterise the bumps of both bodies, transform, multiply, transform back.
+//! The uniform-grid baseline of tests and benches: rasterise the bumps of both bodies, transform, multiply, transform back.
 //!
 //! This is Kavraki's, Lysenko's and ZDock's way, which B&I compare with in their Fig. 8. Each body's function is
 //! sampled on a grid of spacing h, one real array per body: the double skin's factor i only changes the product's sign.
@@ -8,8 +8,8 @@
 //!
 //! # What it computes
 //!
-//! The *product* kernel ([`crate::kernel::product`]), not the lifted one, and so is compared with
-//! [`super::Plan::product`] and [`crate::kernel::ProductScorer`] alone. Its only error is the sampling's: the sum over
+//! The *product* kernel (`kernel::product`), not the lifted one, and so is compared with
+//! `Plan::product` and `ProductScorer` alone. Its only error is the sampling's: the sum over
 //! voxels stands for the integral of F_A(x) F_B(x - t), and errs by the aliases of both spectra at multiples of 1 / h.
 //! For smooth bumps that falls faster than any power of h, for sharp balls (alpha = infinity) like a power (the tests
 //! measure both).
@@ -24,20 +24,19 @@
 //! receptor's: [`UniformGrid::position`]. The box holds both bodies and twice the kernel's reach per axis, so that no
 //! ligand scores with the receptor and its image both. Scores are in Å^3.
 
-use super::plan::{PlanError, check_bodies};
-use crate::kernel::product::{Body, factors, peak_score_and_reach};
-use crate::kernel::{Band, KernelOptions, ProductKernel};
-use crate::quantity::Quantity;
-use crate::rigid_move::center;
-use crate::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
-use crate::transform::{Real, fast_size};
+use knotdock_scoring::engine::PlanError;
+use knotdock_scoring::exact::center;
+use knotdock_scoring::kernel::product::{Body, factors, peak_score_and_reach};
+use knotdock_scoring::kernel::{Band, Bump, KernelError, KernelOptions, ProductKernel};
+use knotdock_scoring::quantity::Quantity;
+use knotdock_scoring::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
+use knotdock_scoring::transform::{Real, fast_size};
 use knotdock_structures::Knots;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
 use num_complex::Complex;
-use serde::{Deserialize, Serialize};
 
 /// Options of the baseline.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub struct UniformGridOptions {
     /// Double skin, bump exponent and low-pass (the trim has no meaning here).
     pub kernel: KernelOptions,
@@ -57,6 +56,7 @@ pub struct UniformGridPlan {
     pub options: UniformGridOptions,
     /// The kernel that the grid samples.
     pub kernel: ProductKernel,
+    bump: Bump,
     /// Grid points per axis.
     pub size: [usize; 3],
     /// Middle of the receptor's bounding box, Å.
@@ -75,7 +75,8 @@ impl UniformGridPlan {
         ligand: &Knots,
         options: UniformGridOptions,
     ) -> Result<Self, PlanError> {
-        check_bodies(receptor, ligand)?;
+        receptor.check()?;
+        ligand.check()?;
         let spacing = options.spacing;
         for (name, value) in [("spacing", spacing), ("tolerance", options.tolerance)] {
             if !(value.is_finite() && value > 0.0) {
@@ -120,6 +121,7 @@ impl UniformGridPlan {
         Ok(Self {
             options,
             kernel,
+            bump: Bump::new(options.kernel.alpha).map_err(KernelError::from)?,
             size,
             receptor_center,
             ligand_center,
@@ -186,11 +188,6 @@ impl<T: Real> UniformGrid<T> {
             fft,
             plan,
         }
-    }
-
-    /// The plan.
-    pub fn plan(&self) -> &UniformGridPlan {
-        &self.plan
     }
 
     /// Buffers for one rotation at a time.
@@ -301,6 +298,7 @@ fn rasterise<T: Real>(
     grid: &mut [T],
 ) {
     let h = plan.options.spacing;
+    let bump = plan.bump;
     let [nx, ny, nz] = plan.size;
     grid.fill(T::zero());
     let wrap = |index: i64, n: usize| index.rem_euclid(n as i64) as usize;
@@ -311,7 +309,12 @@ fn rasterise<T: Real>(
     };
     for ball in balls {
         let [x, y, z] = ball.position.into();
-        let reach = plan.kernel.density_reach(body, ball.radius);
+        let grown = ball.radius + plan.options.kernel.offset;
+        let reach = if body == Body::Solid {
+            ball.radius
+        } else {
+            grown
+        };
         for ix in run(x, reach) {
             let dx = ix as f64 * h - x;
             let left = reach * reach - dx * dx;
@@ -320,16 +323,20 @@ fn rasterise<T: Real>(
                 let near = dx * dx + dy * dy;
                 let half = (reach * reach - near).max(0.0).sqrt();
                 let row = (wrap(ix, nx) * ny + wrap(iy, ny)) * nz;
-                let Some(row) = grid.get_mut(row..row + nz) else {
-                    debug_assert!(false, "a row beyond the grid");
-                    continue;
-                };
+                let row = &mut grid[row..row + nz];
                 let range = run(z, half);
                 let mut place = wrap(*range.start(), nz);
                 for iz in range {
                     let dz = iz as f64 * h - z;
                     let distance = (near + dz * dz).sqrt();
-                    let value = plan.kernel.density(body, ball.radius, distance);
+                    let solid = bump.value(distance / ball.radius);
+                    let value = match body {
+                        Body::Solid => solid,
+                        Body::Grown => bump.value(distance / grown),
+                        Body::DoubleSkin => {
+                            bump.value(distance / grown) - plan.options.kernel.lambda * solid
+                        }
+                    };
                     row[place] += T::of(ball.weight * value);
                     place += 1;
                     if place == nz {
