@@ -52,7 +52,7 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let collision = Collision::new(&solid, &solid).force(true);
     collision.prepare()?;
     let making = start.elapsed().as_secs_f64();
-    let mut work = Workspace::new();
+    let mut work = Workspace::default();
     let path = &setting.path;
     let taken = (0..path.len()).step_by(STRIDE);
     let verdicts = taken.clone().map(|pose| {

@@ -69,7 +69,7 @@ fn answers(
     collision: &Collision,
 ) -> Result<Answers, Box<dyn Error>> {
     let path = &setting.path;
-    let mut work = Workspace::new();
+    let mut work = Workspace::default();
     let verdict =
         |pose: usize, work: &mut Workspace| collision.query(&path[pose], work).certificate();
     let distance =
