@@ -326,7 +326,8 @@ fn complex_affinity_functions_multiply_to_the_score() {
     engine.correlate(&rotation, &mut work);
 
     let kernel = plan.kernel().options();
-    let affinity = |solid| scene::AffinityKnots::of(solid, kernel.lambda, kernel.offset);
+    let affinity =
+        |solid| scene::test_support::AffinityKnots::of(solid, kernel.lambda, kernel.offset);
     let (receptor, ligand) = (affinity(&a), affinity(&b));
     let about = |x: &[f64; 3], center: Vector3<f64>| Vector3::from(*x) - center;
     let x: Vec<[f64; 3]> = receptor

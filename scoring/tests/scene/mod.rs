@@ -15,8 +15,8 @@ use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
 #[path = "../../src/test_support.rs"]
-mod test_support;
-pub use test_support::{AffinityKnots, Numbers};
+pub mod test_support;
+pub use test_support::Numbers;
 
 /// Radii like those of protein atoms, Å.
 pub const RADII: [f64; 3] = [1.5, 1.7, 1.9];
