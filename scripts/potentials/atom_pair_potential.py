@@ -38,7 +38,7 @@ sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
 from contact_potential import TYPES_FILE, neighbours, pair_arguments, selected
 from docked_pairs import ROOT, find_part, read_text, write
 
-DISTANCES = (3.25, 3.75, 4.25, 4.75, 5.25, 5.75)  # A, as in scoring/src/terms/pose/atom_pair_potential.rs
+DISTANCES = (3.25, 3.75, 4.25, 4.75, 5.25, 5.75)  # A, as in scoring/src/terms/pose/atom_pair.rs
 STEP = 0.5  # A
 
 

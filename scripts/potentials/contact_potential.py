@@ -45,7 +45,7 @@ RANGES = {
     "near": (3.5, 4.5),
     "middle": (5.0, 6.0),
     "far": (7.0, 8.0),
-}  # ends in A, as in scoring/src/terms/pose/distance_binned_potential.rs
+}  # ends in A, as in scoring/src/terms/pose/fine_contact.rs
 PROBE = 1.4  # A
 RADII = {"C": 1.8, "N": 1.64, "O": 1.44, "S": 1.77}  # A
 
