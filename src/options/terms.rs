@@ -119,19 +119,29 @@ fn table<P>(path: &Path, script: &str, parse: fn(&str) -> Result<P, Error>) -> R
 #[cfg(test)]
 mod tests {
     use super::*;
-    use knotdock_scoring::terms::weights;
+    use crate::options::definitions;
+    use knotdock_scoring::terms::effect::Effect;
+    use knotdock_scoring::terms::pose::POSE_TERMS;
 
-    /// Each term of the registries has its weight among the options, by the name and with the default that the registry
-    /// states.
+    /// Each term of the registries has its own weight among the options; shape, against which the others are weighed,
+    /// has none.
     #[test]
-    fn weights_are_those_of_the_registries() {
-        let (options, record) = (TermOptions::default(), TermOptions::default());
-        let record = serde_json::to_value(record).unwrap();
-        for (id, weight) in weights() {
-            assert_eq!(options.weight(id), Some(weight.default), "{id}");
-            let name = weight.option.replace('-', "_");
-            assert_eq!(record[&name], weight.default, "{name}");
+    fn every_term_has_its_weight() {
+        let effects = Effect::ALL.map(|effect| effect.definition().id);
+        let ids = effects
+            .into_iter()
+            .chain(POSE_TERMS.iter().map(|term| term.id));
+        let ids: Vec<&str> = ids.filter(|id| *id != "shape").collect();
+        let default = TermOptions::default();
+        assert_eq!(default.weight("shape"), None);
+        let is_weight = |name: &str| name.ends_with("_weight") && name != "core_weight";
+        let own = definitions().iter().filter(|one| one.subject() == "terms");
+        assert_eq!(own.filter(|one| is_weight(one.name())).count(), ids.len());
+        for id in ids {
+            assert!(
+                default.weight(id).is_some_and(|weight| weight > 0.0),
+                "{id}"
+            );
         }
-        assert_eq!(options.weight("shape"), None);
     }
 }

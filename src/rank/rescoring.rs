@@ -69,7 +69,7 @@ impl<'a> Rescoring<'a> {
         let acting = acting.map(|(term, weight)| ActingTerm {
             id: term.id,
             weight,
-            unit: term.weight.unit,
+            unit: term.unit,
         });
         acting.collect()
     }

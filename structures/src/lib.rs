@@ -1,5 +1,25 @@
 //! Files to solids to knots.
 //!
+//! # Example
+//!
+//! ```
+//! # #[cfg(all(feature = "mesh", feature = "molecule"))]
+//! # fn main() -> Result<(), knotdock_structures::Error> {
+//! use knotdock_structures::mesh::Mesh;
+//! use knotdock_structures::molecule::Molecule;
+//!
+//! # let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/examples");
+//! let knots = Molecule::read(&format!("{folder}/1ppe_ligand_unbound.pdb"))?.knots()?;
+//! assert_eq!(knots.len(), 221);
+//!
+//! let balls = Mesh::read(format!("{folder}/bunny.obj"))?.solid()?.decompose(1 << 12)?;
+//! assert!(balls.inner().len() > 300 && balls.epsilon() > 0.0);
+//! # Ok(())
+//! # }
+//! # #[cfg(not(all(feature = "mesh", feature = "molecule")))]
+//! # fn main() {}
+//! ```
+//!
 //! # Conventions
 //!
 //! - Lengths are in Å for molecules and in the file's own unit for meshes.

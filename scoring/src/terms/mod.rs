@@ -10,32 +10,7 @@
 pub mod effect;
 pub mod pose;
 
-use effect::Effect;
 use knotdock_structures::Error;
-use pose::POSE_TERMS;
-
-/// The weights of all terms by their ids: those of effects, then those of pose terms, each in the order of the registry.
-pub fn weights() -> impl Iterator<Item = (&'static str, &'static Weight)> {
-    let effects = Effect::ALL.into_iter().filter_map(|effect| {
-        let definition = effect.definition();
-        let weight = definition.weight.as_ref()?;
-        Some((definition.id, weight))
-    });
-    effects.chain(POSE_TERMS.iter().map(|term| (term.id, &term.weight)))
-}
-
-/// Weight of a term. The user sets it by an option.
-#[derive(Clone, Copy, Debug)]
-pub struct Weight {
-    /// Name of the option: lower case with `-` between words, ending in `-weight`.
-    pub option: &'static str,
-    /// Description of the option: the quantity that the weight multiplies.
-    pub help: &'static str,
-    /// Unit of the weight.
-    pub unit: &'static str,
-    /// Value if the option is left out.
-    pub default: f64,
-}
 
 /// The potential of a built-in table.
 ///
@@ -71,23 +46,19 @@ pub(crate) fn wrong(line: usize, message: impl std::fmt::Display) -> Error {
 
 #[cfg(test)]
 mod tests {
-    use super::*;
+    use super::effect::Effect;
+    use super::pose::POSE_TERMS;
     use std::collections::HashSet;
 
-    /// Options, records and files name each weight by its option, and code by its term.
+    /// Columns, records and options name each term by its id.
     #[test]
-    fn ids_and_options_are_unique_and_well_formed() {
-        let (mut ids, mut options) = (HashSet::new(), HashSet::new());
-        for (id, weight) in weights() {
-            assert!(ids.insert(id) && options.insert(weight.option), "{id}");
-            let is_of_option = |c: char| c.is_ascii_lowercase() || c == '-';
-            assert!(weight.option.chars().all(is_of_option), "{id}");
-            assert!(weight.option.ends_with("-weight"), "{id}");
-            assert!(weight.default >= 0.0 && weight.default.is_finite(), "{id}");
-            assert!(!weight.help.is_empty() && !weight.unit.is_empty(), "{id}");
-        }
-        // All but shape have one.
-        assert_eq!(ids.len(), Effect::ALL.len() - 1 + POSE_TERMS.len());
+    fn ids_are_unique() {
+        let effects = Effect::ALL.map(|effect| effect.definition().id);
+        let ids = effects
+            .into_iter()
+            .chain(POSE_TERMS.iter().map(|term| term.id));
+        let ids: Vec<&str> = ids.collect();
+        assert_eq!(ids.iter().collect::<HashSet<_>>().len(), ids.len());
     }
 }
 

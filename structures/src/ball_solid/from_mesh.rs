@@ -1,6 +1,7 @@
 //! The solid of a mesh as balls, by Algorithm 1.
 
 use super::{BallSolid, density, mean_center};
+use crate::Error;
 use crate::ball::Ball;
 use crate::ball_solid::BallHierarchy;
 use crate::knots::Knots;
@@ -84,6 +85,22 @@ impl BallSolid {
             missed: (volume > 0.0).then(|| fit.volume_missed / volume),
         };
         Ok((solid, sampled))
+    }
+}
+
+impl Solid {
+    /// The solid as balls between which its surface lies, by Algorithm 1 on a cubic grid of about `nodes` nodes:
+    /// [`BallSolid::from_mesh`].
+    ///
+    /// # Errors
+    /// [`Error`] if no ball can be placed.
+    pub fn decompose(&self, nodes: usize) -> Result<BallSolid, Error> {
+        let per_axis = (nodes as f64).cbrt().round().max(2.0) as usize;
+        let (solid, _) = BallSolid::from_mesh(self, per_axis).map_err(|error| {
+            Error::input(error)
+                .help("check that the mesh is closed and one solid, or sample it on a finer grid")
+        })?;
+        Ok(solid)
     }
 }
 

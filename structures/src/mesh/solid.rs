@@ -1,5 +1,7 @@
 //! The solid that a mesh bounds: depth, inside and nearest surface point, in a frame where lengths are about one.
 
+use std::path::Path;
+
 use crate::error::Error;
 use crate::mesh::repair::weld::degenerate;
 use crate::mesh::triangle_mesh::Mesh;
@@ -53,6 +55,24 @@ pub struct Solid {
     surface: Surface,
     tree: TriangleTree,
     half_sides: [f64; 3],
+}
+
+impl Mesh {
+    /// Reads a mesh (`.stl`, `.obj`, `.ply` or `.off`); [`read`](super::read()) gives the report on it as well.
+    ///
+    /// # Errors
+    /// [`Error`] for a file that cannot be read or holds no mesh.
+    pub fn read(path: impl AsRef<Path>) -> Result<Self, Error> {
+        Ok(super::read(path.as_ref())?.0)
+    }
+
+    /// The solid that the mesh bounds.
+    ///
+    /// # Errors
+    /// As [`Solid::new`].
+    pub fn solid(&self) -> Result<Solid, Error> {
+        Solid::new(self)
+    }
 }
 
 impl Solid {

@@ -7,7 +7,7 @@
 
 use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
 use crate::kernel::smooth_step_down;
-use crate::terms::{Weight, built_in, end, table_lines, wrong};
+use crate::terms::{built_in, end, table_lines, wrong};
 use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
 
@@ -16,12 +16,6 @@ pub(super) const EFFECT: EffectDefinition = EffectDefinition {
     id: "contact",
     of_meshes: "meshes have no atom types",
     components: 3.0,
-    weight: Some(Weight {
-        option: "contact-weight",
-        help: "Weight of the contact potential",
-        unit: "score per RT",
-        default: 2.0,
-    }),
     lacks: |inputs| {
         let too_few = inputs.sides().find(|(_, labels)| {
             labels.typed == 0 || (labels.typed as f64) < TYPED_SHARE * labels.atoms as f64

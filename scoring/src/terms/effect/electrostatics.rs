@@ -9,7 +9,6 @@
 
 use super::{Effect, EffectDefinition, Label, RadialFunction, Term};
 use crate::kernel::smooth_step_down;
-use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the effect.
@@ -17,12 +16,6 @@ pub(super) const EFFECT: EffectDefinition = EffectDefinition {
     id: "electrostatics",
     of_meshes: "meshes carry no charges",
     components: 2.0,
-    weight: Some(Weight {
-        option: "electrostatics-weight",
-        help: "Weight of the electrostatic energy",
-        unit: "score per kcal/mol",
-        default: 24.0,
-    }),
     lacks: |inputs| {
         let uncharged = inputs.sides().find(|(_, labels)| labels.charged == 0);
         uncharged.map(|(side, _)| format!("no atom of the {side} carries a charge"))

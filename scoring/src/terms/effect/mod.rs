@@ -23,7 +23,6 @@ mod kernel;
 pub mod restraint;
 pub mod shape;
 
-use crate::terms::Weight;
 use contact::Potential;
 pub use kernel::EffectKernel;
 use knotdock_structures::Knots;
@@ -87,8 +86,6 @@ pub struct EffectDefinition {
     pub of_meshes: &'static str,
     /// Number of components of the compressed functions that it takes at the default tolerance (cost model).
     pub components: f64,
-    /// Its weight; `None` for shape, which every other term is weighed against.
-    pub weight: Option<Weight>,
     /// Data that the inputs lack for it; `None` if they hold what it reads.
     pub lacks: fn(&EffectInputs) -> Option<String>,
     /// Reason that it is on, where the inputs lack nothing.

@@ -5,7 +5,6 @@
 //! without contacts of other atoms scores as without the effect.
 
 use super::{Effect, EffectDefinition, Label, Term, contact};
-use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the effect.
@@ -13,13 +12,6 @@ pub(super) const EFFECT: EffectDefinition = EffectDefinition {
     id: "restraint",
     of_meshes: "meshes have no residues",
     components: 1.0,
-    weight: Some(Weight {
-        option: "restraint-weight",
-        help: "Cost of a contact of a blocked atom",
-        unit: "score",
-        // About what contacts earn: 1.1 to 1.6 in all terms together among good poses of training pairs.
-        default: 1.0,
-    }),
     lacks: |inputs| {
         let mut roles = inputs.roles.into_iter().flatten();
         let all_free = roles.all(|role| *role == ResidueRole::Free);

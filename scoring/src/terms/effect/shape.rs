@@ -10,7 +10,6 @@ pub(super) const EFFECT: EffectDefinition = EffectDefinition {
     id: "shape",
     of_meshes: "always on",
     components: 2.0,
-    weight: None,
     lacks: |_| None,
     reason: |_| "always on".to_owned(),
     term: |_, _, _| None,

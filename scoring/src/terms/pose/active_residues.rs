@@ -10,19 +10,13 @@
 use super::bodies::{Sides, positions};
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "active_residues",
     label: "active residues",
-    weight: Weight {
-        option: "active-weight",
-        help: "Score of a pose in which all active residues are in contact; other poses get their share of it",
-        unit: "score",
-        default: 2000.0,
-    },
+    unit: "score",
     time_share: UNRELAXED,
     is_shown_always: true,
     reads: "residues",

@@ -3,7 +3,7 @@
 use super::bodies::Bodies;
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::{Weight, built_in, table_lines, wrong};
+use crate::terms::{built_in, table_lines, wrong};
 use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
 use std::collections::HashMap;
@@ -13,12 +13,7 @@ use std::sync::LazyLock;
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "atom_pair",
     label: "atom pairs",
-    weight: Weight {
-        option: "atom-pair-weight",
-        help: "Weight of the atom pair potential, which scores poses where the contact effect is on",
-        unit: "score per RT",
-        default: 1.0,
-    },
+    unit: "score per RT",
     time_share: UNRELAXED,
     is_shown_always: true,
     reads: "atoms with kinds",

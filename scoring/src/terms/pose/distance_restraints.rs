@@ -9,19 +9,13 @@
 
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "restraints_penalty",
     label: "distance restraints",
-    weight: Weight {
-        option: "violation-weight",
-        help: "Cost of each Å by which a pose violates the distance restraints",
-        unit: "score per Å",
-        default: 400.0,
-    },
+    unit: "score per Å",
     time_share: UNRELAXED,
     is_shown_always: false,
     reads: "restraints",

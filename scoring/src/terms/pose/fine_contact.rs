@@ -4,7 +4,7 @@ use super::bodies::Bodies;
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
 use crate::terms::effect::contact::{Potential, TYPES, header};
-use crate::terms::{Weight, built_in, end, table_lines};
+use crate::terms::{built_in, end, table_lines};
 use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
 
@@ -12,12 +12,7 @@ use serde::{Deserialize, Serialize};
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "fine_contact",
     label: "fine contacts",
-    weight: Weight {
-        option: "fine-contact-weight",
-        help: "Weight of the fine contact potential, which scores poses where the contact effect is on",
-        unit: "score per RT",
-        default: 2.0,
-    },
+    unit: "score per RT",
     time_share: UNRELAXED,
     is_shown_always: true,
     reads: "atoms with contact types",

@@ -17,19 +17,13 @@
 use super::bodies::{Sides, positions};
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "interface_predictions",
     label: "interface predictions",
-    weight: Weight {
-        option: "interface-weight",
-        help: "Score of a residue in contact for each nat by which its log-odds to be in the interface exceed those of the mean",
-        unit: "score per nat",
-        default: 5.0,
-    },
+    unit: "score per nat",
     time_share: UNRELAXED,
     is_shown_always: false,
     reads: "residues with a prediction",

@@ -5,18 +5,12 @@
 
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::Weight;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "membrane",
     label: "membranes",
-    weight: Weight {
-        option: "membrane-weight",
-        help: "Cost of each Å by which a pose lies in the membrane",
-        unit: "score per Å",
-        default: 50.0,
-    },
+    unit: "score per Å",
     time_share: UNRELAXED,
     is_shown_always: false,
     reads: "membranes",

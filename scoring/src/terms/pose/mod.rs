@@ -21,8 +21,8 @@
 //!
 //! # Adding a term
 //!
-//! Write a file with a constant [`TermDefinition`], and add the constant to
-//! [`POSE_TERMS`]. Its weight option, its column in `poses.csv`, its JSON keys and its place in every report follow
+//! Write a file with a constant [`TermDefinition`], and add the constant to [`POSE_TERMS`]. Its weight is a line among
+//! the options (`src/options/terms.rs`). Its column in `poses.csv`, its JSON keys and its place in every report follow
 //! from the registry.
 
 mod active_residues;
@@ -37,7 +37,6 @@ mod termini;
 mod unresolved;
 
 use crate::se3::Pose;
-use crate::terms::Weight;
 pub use active_residues::Residues;
 pub use atom_pair::{AtomPairPotential, DISTANCES, STEP, atom_kinds};
 pub use distance_restraints::{DistanceRestraint, DistanceRestraints};
@@ -75,8 +74,8 @@ pub struct TermDefinition {
     pub id: &'static str,
     /// Name in reports: lower case, in the plural.
     pub label: &'static str,
-    /// Its weight.
-    pub weight: Weight,
+    /// Unit of its weight.
+    pub unit: &'static str,
     /// Time to score a pose by this and all cheaper terms, as a share of the time with every term (cost model).
     pub time_share: f64,
     /// Whether tables have its column where it does not act, too.

@@ -5,19 +5,13 @@
 use super::bodies::{Sides, positions};
 use super::{TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use crate::terms::Weight;
 use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "termini",
     label: "termini",
-    weight: Weight {
-        option: "termini-weight",
-        help: "Cost of an atom near a terminus of its chain, or near a gap in it, that is in contact with the other side",
-        unit: "score",
-        default: 2.0,
-    },
+    unit: "score",
     time_share: UNRELAXED,
     is_shown_always: true,
     reads: "atoms near termini and gaps",

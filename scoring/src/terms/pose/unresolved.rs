@@ -10,7 +10,6 @@ use super::{TermDefinition, UNRELAXED};
 use crate::blocks::Near;
 use crate::rigid_move::center;
 use crate::se3::Pose;
-use crate::terms::Weight;
 use knotdock_structures::{Conformers, Knots};
 use nalgebra::{Matrix3, Vector3};
 
@@ -18,13 +17,7 @@ use nalgebra::{Matrix3, Vector3};
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "unresolved",
     label: "unresolved residues",
-    weight: Weight {
-        option: "unresolved-weight",
-        help: "Cost of an atom where unresolved residues of the other side are, in gaps of a chain or past its termini, times the share \
-                  of their conformers there",
-        unit: "score",
-        default: 3.0,
-    },
+    unit: "score",
     time_share: UNRELAXED,
     is_shown_always: true,
     reads: "segments",

@@ -19,7 +19,6 @@ use super::atom_pair::{AtomPairPotential, EnergyTable, SMOOTH_REACH};
 use crate::blocks::Blocks;
 use crate::rigid_move::{Derivatives, Move, center};
 use crate::se3::Pose;
-use crate::terms::Weight;
 use knotdock_structures::Knots;
 use nalgebra::{Matrix3, Vector3, Vector6};
 use pulp::{Arch, Simd, WithSimd};
@@ -28,13 +27,7 @@ use pulp::{Arch, Simd, WithSimd};
 pub(super) const TERM: TermDefinition = TermDefinition {
     id: "relaxed",
     label: "atom pairs once relaxed",
-    weight: Weight {
-        option: "relaxed-weight",
-        help: "Weight of the atom pair potential with a penalty on overlap, after a rigid move of at most 2 Å; it scores poses where \
-                  the contact effect is on",
-        unit: "score per RT",
-        default: 3.0,
-    },
+    unit: "score per RT",
     time_share: 1.0,
     is_shown_always: true,
     reads: "atoms with kinds",
