@@ -64,7 +64,11 @@ impl DockOptions {
     /// As those of [`Self::read_file`]; they name the line as a file.
     pub fn read_line(&mut self, line: &str) -> Result<Vec<GivenOption>, Error> {
         let read = self.read_entries(line, Path::new(line), Path::new(""));
-        read.map_err(|error| error.on_line(None))
+        // The line of a file that the option names stays.
+        read.map_err(|error| match error.file() == Some(Path::new(line)) {
+            true => error.on_line(None),
+            false => error,
+        })
     }
 
     /// Sets the options of a text, which errors call `path`. Files that it names are looked for from `folder`.

@@ -325,7 +325,7 @@ fn a_table_that_is_none_is_refused_before_anything_runs() {
         assert_eq!(output.status.code(), Some(2));
         let object: Value = serde_json::from_slice(&output.stdout).unwrap();
         let remedy = object["error"]["remedy"].as_str().unwrap();
-        assert!(remedy.starts_with(&format!("give {word} before --")));
+        assert!(remedy.starts_with(&format!("put {word} before `--`")));
         assert!(!folder.path().join("out").exists());
     }
     // Nor is a directory of somebody else's taken.
