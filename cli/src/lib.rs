@@ -67,7 +67,7 @@ enum Command {
     Merge(commands::merge::Merge),
     Export(commands::export::Export),
     Refine(commands::refine::Refine),
-    Evaluate(commands::evaluate::Evaluate),
+    Evaluate(Box<commands::evaluate::Evaluate>),
     Score(Box<commands::score::Score>),
     Interface(Box<commands::interface::InterfaceCommand>),
     Report(commands::report::Report),
@@ -142,7 +142,7 @@ pub fn main(arguments: Vec<OsString>) -> u8 {
     };
     let console = Console::from(cli.program);
     if let Err(error) = threads::stay_on_main() {
-        console.fail(&error.into());
+        console.fail(&error);
         return 1;
     }
     match run(cli.command, console).and_then(|code| Console::all_said().map(|()| code)) {

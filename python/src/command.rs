@@ -24,7 +24,7 @@ use crate::failure::{exception, fault};
 /// Adds files to a run: its inputs, which are found again beside its record.
 #[pyfunction]
 pub fn add(py: Python<'_>, run: PathBuf, files: Vec<PathBuf>) -> PyResult<()> {
-    add_files(&run, &files).map_err(|error| exception(py, &Error::from(error)))
+    add_files(&run, &files).map_err(|error| exception(py, &error))
 }
 
 /// Time between two looks at signals and at what the command has said.

@@ -19,7 +19,7 @@ pub fn check_output<'a>(
 ) -> Result<(), Error> {
     check_not_read(file, read)?;
     if is_link(file) {
-        return Err(file_error::link(file).into());
+        return Err(file_error::link(file));
     }
     // A device or a pipe is there and is meant to be written to.
     if !force && file.is_file() && !is_stream(file) {

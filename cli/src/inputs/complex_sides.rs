@@ -50,7 +50,7 @@ impl ComplexSides {
                 chains: Some(names.split(',').map(str::to_owned).collect()),
                 ..whole.clone()
             };
-            Ok(read_bytes(&spec, file.bytes.to_vec(), options)?)
+            read_bytes(&spec, file.bytes.to_vec(), options)
         };
         let molecules = [side(&chains[0])?, side(&chains[1])?];
         Ok(Self {

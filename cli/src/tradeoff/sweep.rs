@@ -64,7 +64,7 @@ pub fn sweep(
         progress.runs(index + 1, setting);
         let (measured, poses) = match run(setting, prepared, evaluator, progress) {
             Ok(run) => run,
-            Err(error) if setting.is_needed() => return Err(error.into()),
+            Err(error) if setting.is_needed() => return Err(error),
             Err(error) => {
                 let left_out = Refused::new(setting, error);
                 progress.refused(&left_out);

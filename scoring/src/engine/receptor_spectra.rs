@@ -18,13 +18,16 @@ use std::sync::Arc;
 /// Spectra by function, shared with copies that leave an effect out.
 pub(super) type SpectrumList<T> = Vec<Arc<Vec<Complex<T>>>>;
 
+/// The spectra of the functions in their precision.
+type Spectra = InPrecision<SpectrumList<f32>, SpectrumList<f64>>;
+
 /// The receptor's side, uncompressed: `H[function][mode]`, and the values of the functions at the ligand's knots.
 ///
 /// The first functions are those of the lifted axis; each further effect adds one for every class that the ligand has.
 #[derive(Clone)]
 pub struct ReceptorSpectra {
     /// Window and volume are not yet divided out on the ligand's side.
-    pub(super) spectra: InPrecision<SpectrumList<f32>, SpectrumList<f64>>,
+    pub(super) spectra: Spectra,
     /// d_j v_b(s_j): (knots, functions).
     ligand: DMatrix<f64>,
     pub(super) center: [f64; 3],
@@ -68,7 +71,7 @@ impl ReceptorSpectra {
         plan: &Plan,
         [receptor, ligand]: [&Knots; 2],
         fold: Quantity,
-        wrap: fn(SpectrumList<T>) -> InPrecision<SpectrumList<f32>, SpectrumList<f64>>,
+        wrap: fn(SpectrumList<T>) -> Spectra,
     ) -> Self {
         assert!(plan.holds_ligand(ligand), "the plan is of another ligand");
         let knots = Receptor::<T>::new(plan, receptor);

@@ -220,7 +220,9 @@ impl<'a> Tokens<'a> {
 mod tests {
     use super::*;
 
-    fn all(text: &str) -> Result<Vec<(Token<'_>, (u64, usize))>, Error> {
+    type Placed<'a> = (Token<'a>, (u64, usize));
+
+    fn all(text: &str) -> Result<Vec<Placed<'_>>, Error> {
         let mut tokens = Tokens::new(text);
         let mut all = Vec::new();
         while let Some((token, place)) = tokens.next()? {

@@ -94,7 +94,12 @@ pub fn begins(bytes: &[u8]) -> bool {
 
 /// Reads a file.
 pub fn parse(bytes: &[u8]) -> Result<Soup, Error> {
-    let (encoding, elements, payload, before) = header(bytes)?;
+    let Header {
+        encoding,
+        elements,
+        payload,
+        lines: before,
+    } = header(bytes)?;
     if !elements.iter().any(|element| element.role == Role::Vertex) {
         return Err(broken(None, "the header has no element vertex"));
     }
@@ -111,8 +116,18 @@ pub fn parse(bytes: &[u8]) -> Result<Soup, Error> {
     })
 }
 
-/// Reads the header: encoding, elements, the bytes after it and the number of its lines.
-fn header(bytes: &[u8]) -> Result<(Encoding, Vec<Element>, &[u8], usize), Error> {
+/// The header of a file.
+struct Header<'a> {
+    encoding: Encoding,
+    elements: Vec<Element>,
+    /// The bytes after it.
+    payload: &'a [u8],
+    /// Its lines.
+    lines: usize,
+}
+
+/// Reads the header.
+fn header(bytes: &[u8]) -> Result<Header<'_>, Error> {
     let lead = bytes.len() - bytes.trim_ascii_start().len();
     let (blank, start) = bytes.split_at(lead);
     let mut number = blank.iter().filter(|&&byte| byte == b'\n').count();
@@ -182,7 +197,12 @@ fn header(bytes: &[u8]) -> Result<(Encoding, Vec<Element>, &[u8], usize), Error>
             (["end_header"], _) => {
                 let encoding =
                     encoding.ok_or_else(|| broken(None, "the header has no line 'format'"))?;
-                return Ok((encoding, elements, rest, number));
+                return Ok(Header {
+                    encoding,
+                    elements,
+                    payload: rest,
+                    lines: number,
+                });
             }
             _ => return Err(fault()),
         }
