@@ -161,7 +161,7 @@ proptest! {
             let t = pair.engine.position(voxel);
             if voxel % 5 == 0 && (0..3).any(|axis| half[axis] - t[axis].abs() < pair.plan.spacing()) {
                 let exact = pair.exact(rotation, voxel);
-                prop_assert!((f64::from(value) - exact).abs() <= bound, "{value} {exact} at {t:?}");
+                prop_assert!((value - exact).abs() <= bound, "{value} {exact} at {t:?}");
             }
         }
     }
