@@ -226,7 +226,7 @@ impl RotationSpectrum {
         Self::new(Arc::new(layout), frame, UnitQuaternion::identity(), values)
     }
 
-    /// Buffers for [`Self::gradient`], where no [`super::TruncatedCorrelation`] has made them.
+    /// Buffers for [`Self::gradient`], where no `TruncatedCorrelation` has made them.
     pub fn workspace(&self) -> Workspace {
         Workspace::new(&self.layout, 0)
     }

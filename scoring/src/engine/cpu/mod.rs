@@ -119,7 +119,7 @@ impl CpuEngine {
         self.workspace_of(1)
     }
 
-    /// Buffers for so many images of a rotation together, [`TOGETHER`] at most.
+    /// Buffers for so many images of a rotation together, `TOGETHER` at most.
     pub fn workspace_of(&self, images: usize) -> Workspace {
         let images = images.clamp(1, TOGETHER);
         let size = self.plan().size();

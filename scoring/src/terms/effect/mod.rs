@@ -7,7 +7,7 @@
 //! matrix M carries the weight and the sign, and k is a radial function. A higher score is better, so energies enter
 //! with a minus.
 //!
-//! The filter of the ranking kernel is applied to k ([`crate::kernel::radial_filter`]). So k ends at the same reach
+//! The filter of the ranking kernel is applied to k (`kernel::radial_filter`). So k ends at the same reach
 //! and the same frequency as shape, and an effect needs no grid, modes or cell list of its own. In the Fourier domain
 //! it adds one function of the ligand for each class. The engine compresses these together with those of shape. An
 //! effect that is off adds none.

@@ -1,7 +1,7 @@
 //! The non-uniform fast Fourier transform (NUFFT): both types, three or four dimensions, single or double precision.
 //!
 //! This is the general transform. It takes any points of the period and any number of modes an axis, keeps all modes,
-//! and reports every misuse as an error. The search uses the other one, [`super::pruned_type1`]: type 1 alone, of knots
+//! and reports every misuse as an error. The search uses the other one, `pruned_type1`: type 1 alone, of knots
 //! inside a block of the box, with only the modes of a [`super::modes::ModeSet`], several sets of weights at a time.
 //!
 //! # Conventions
