@@ -103,11 +103,13 @@ impl<T: Real> Forward<T> {
     }
 
     /// Fine grid points of the block that knots are spread onto, on each axis.
+    #[cfg(feature = "gpu")]
     pub(crate) fn block(&self) -> [usize; 3] {
         self.block
     }
 
     /// The spreading window.
+    #[cfg(feature = "gpu")]
     pub fn kernel(&self) -> &SpreadingKernel<T> {
         &self.kernel
     }
