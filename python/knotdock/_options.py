@@ -11,7 +11,7 @@ class DockOptions(TypedDict, total=False):
     """Options of every run."""
 
     waters: str | float | Sequence[object]
-    """Waters: drop or keep [default: drop]"""
+    """Waters: drop or keep. [default: drop]"""
 
     hetatm: str | float | Sequence[object]
     """Other HETATM records: no-additives, keep or drop. no-additives drops known buffer and cryo additives.
@@ -43,7 +43,7 @@ class DockOptions(TypedDict, total=False):
     disordered. If neither file is known as a prediction, B values that can be pLDDT are taken for it."""
 
     sample_grid: str | float | Sequence[object]
-    """Nodes of the grid on which each mesh is sampled, as 2^18 or 262144 [default: 2^18]"""
+    """Nodes of the grid on which each mesh is sampled, as 2^18 or 262144 [default: 2^18]."""
 
     sample_weights: Literal["fitted", "unit"]
     """Weights of the balls of meshes: fitted or unit [default: fitted]. fitted: the summed bumps come closest
@@ -58,14 +58,14 @@ class DockOptions(TypedDict, total=False):
     The names are shape (always on), electrostatics, contact and restraint. [default: auto]"""
 
     lambda_: float | str
-    """Penalty of overlap against the reward of contact [default: 9]"""
+    """Penalty of overlap against the reward of contact. [default: 9]"""
 
     offset: float | str
     """Depth r0 of the skin. For meshes it is the gap that is looked for between the parts. Its default is then
     twice the eps of both parts' sampling, and at most twice the smaller feature size. [default: 2.2]"""
 
     alpha: float | str
-    """Exponent of the bump kernel: large values harden the balls, `inf` makes them sharp [default: 2]"""
+    """Exponent of the bump kernel: large values harden the balls, `inf` makes them sharp. [default: 2]"""
 
     resolution: float | str
     """Finest detail that is ranked: the low-pass ends at one cycle per this length. For meshes the default is
@@ -76,58 +76,58 @@ class DockOptions(TypedDict, total=False):
     below one cycle per this length, which is at least a hundredth above the resolution."""
 
     spacing: str | float | Sequence[object]
-    """Spacing of the translation grid [default: half the resolution, or finer where the tolerance needs it]"""
+    """Spacing of the translation grid [default: half the resolution, or finer where the tolerance needs it]."""
 
     tolerance: float | str
     """Error of the fast path that is allowed, as a share of the best score. A smaller one also lengthens the
     window of the kernel. Exact scores of runs with different tolerances therefore differ. [default: 0.01]"""
 
     core_weight: float | str
-    """Weight in shape of atoms that no water reaches, against 1 for the others [default: 1]"""
+    """Weight in shape of atoms that no water reaches, against 1 for the others. [default: 1]"""
 
     electrostatics_weight: float | str
-    """Weight of the electrostatic energy: score per kcal/mol [default: 24]"""
+    """Weight of the electrostatic energy: score per kcal/mol. [default: 24]"""
 
     contact_weight: float | str
-    """Weight of the contact potential: score per RT [default: 2]"""
+    """Weight of the contact potential: score per RT. [default: 2]"""
 
     restraint_weight: float | str
-    """Cost of a contact of a blocked atom: score [default: 1]"""
+    """Cost of a contact of a blocked atom: score. [default: 1]"""
 
     fine_contact_weight: float | str
     """Weight of the fine contact potential, which scores poses where the contact effect is on: score per RT; 0
-    leaves the term out [default: 2]"""
+    leaves the term out. [default: 2]"""
 
     atom_pair_weight: float | str
     """Weight of the atom pair potential, which scores poses where the contact effect is on: score per RT; 0
-    leaves the term out [default: 1]"""
+    leaves the term out. [default: 1]"""
 
     relaxed_weight: float | str
     """Weight of the atom pair potential with a penalty on overlap, after a rigid move of at most 2 Å; it scores
-    poses where the contact effect is on: score per RT; 0 leaves the term out [default: 3]"""
+    poses where the contact effect is on: score per RT; 0 leaves the term out. [default: 3]"""
 
     active_weight: float | str
     """Score of a pose in which all active residues are in contact; other poses get their share of it: score; 0
-    leaves the term out [default: 2000]"""
+    leaves the term out. [default: 2000]"""
 
     unresolved_weight: float | str
     """Cost of an atom where unresolved residues of the other side are, in gaps of a chain or past its termini,
-    times the share of their conformers there: score; 0 leaves the term out [default: 3]"""
+    times the share of their conformers there: score; 0 leaves the term out. [default: 3]"""
 
     termini_weight: float | str
     """Cost of an atom near a terminus of its chain, or near a gap in it, that is in contact with the other
-    side: score; 0 leaves the term out [default: 2]"""
+    side: score; 0 leaves the term out. [default: 2]"""
 
     violation_weight: float | str
-    """Cost of each Å by which a pose violates the distance restraints: score per Å; 0 leaves the term out
+    """Cost of each Å by which a pose violates the distance restraints: score per Å; 0 leaves the term out.
     [default: 400]"""
 
     interface_weight: float | str
     """Score of a residue in contact for each nat by which its log-odds to be in the interface exceed those of
-    the mean: score per nat; 0 leaves the term out [default: 5]"""
+    the mean: score per nat; 0 leaves the term out. [default: 5]"""
 
     membrane_weight: float | str
-    """Cost of each Å by which a pose lies in the membrane: score per Å; 0 leaves the term out [default: 50]"""
+    """Cost of each Å by which a pose lies in the membrane: score per Å; 0 leaves the term out. [default: 50]"""
 
     contact_potential: str | os.PathLike[str]
     """Contact potential in place of the program's own. A table as scripts/potentials/contact_potential.py
@@ -142,7 +142,7 @@ class DockOptions(TypedDict, total=False):
     writes it."""
 
     ph: float | str
-    """pH at which charges are assigned [default: 7]"""
+    """pH at which charges are assigned. [default: 7]"""
 
     antibody: Literal["cdrs", "whole"]
     """What may touch of an antibody: cdrs or whole. Antibodies are detected from their sequence. cdrs: the
@@ -188,7 +188,7 @@ class DockOptions(TypedDict, total=False):
     receptor's file. Poses that touch the likely residues rank higher, by terms.interface_weight."""
 
     interface_ligand: str | os.PathLike[str]
-    """The same of the ligand"""
+    """The same of the ligand."""
 
     membrane: str | float | Sequence[object]
     """A membrane that no atom of the other molecule enters: receptor, ligand or two heights z. receptor or
@@ -212,7 +212,7 @@ class DockOptions(TypedDict, total=False):
     of the best rotations' own."""
 
     fine_share: float | str
-    """Share of the finer rotations that are searched [default: 0.05]"""
+    """Share of the finer rotations that are searched. [default: 0.05]"""
 
     precision: Literal["single", "double"]
     """Floating-point type of the search: single or double. single allows tolerances down to 1e-4, double down
@@ -224,10 +224,10 @@ class DockOptions(TypedDict, total=False):
     WGPU_ADAPTER_NAME names one. [default: cpu]"""
 
     per_rotation: float | str
-    """Peaks kept of each rotation [default: 3]"""
+    """Peaks kept of each rotation. [default: 3]"""
 
     poses: float | str
-    """Poses kept of all rotations [default: 2000]"""
+    """Poses kept of all rotations. [default: 2000]"""
 
     refine: str | float | Sequence[object]
     """Best poses to refine off the grid [default: 600 with shape alone, else none]. Beside other effects
@@ -253,16 +253,16 @@ class DockOptions(TypedDict, total=False):
     one are left out."""
 
     write_top: float | str
-    """Complexes to write to top/ [default: 10]"""
+    """Complexes to write to top/. [default: 10]"""
 
     diagnostics: bool
-    """Add the diagnostic columns to poses.csv"""
+    """Add the diagnostic columns to poses.csv."""
 
     no_report: bool
-    """Write no report.html"""
+    """Write no report.html."""
 
     threads: str | float | Sequence[object]
-    """Threads [default: all hardware threads]"""
+    """Threads [default: all hardware threads]."""
 
     memory: str | float | Sequence[object]
     """Memory that the whole run may take, such as 800M or 4GiB [default: 80% of what is free]. Program, reading
