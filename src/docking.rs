@@ -28,7 +28,6 @@ use std::time::Instant;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 
-use crate::dock::cost::deadline;
 use crate::dock::outcome::DockOutcome;
 use crate::dock::pair::PreparedPair;
 use crate::dock::plan::DockPlan;
@@ -108,8 +107,7 @@ impl<'a> Docking<'a> {
         threads::on(options.machine.thread_count(), || {
             let prepared = PreparedPair::molecules(self.molecules, &options)?;
             let PreparedPair { plan, points, .. } = &prepared;
-            let deadline = self.end.map(|end| deadline(plan, end));
-            let outcome = dock_until(plan, points, deadline.as_ref(), self.progress)?;
+            let outcome = dock_until(plan, points, self.end, self.progress)?;
             Ok(Run {
                 molecules: self.molecules.map(Molecule::clone),
                 options: options.changed(|options| options.stopped = outcome.stopped),

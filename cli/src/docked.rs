@@ -46,7 +46,7 @@ impl Docking {
     pub fn dock(mut self, console: Console) -> Result<Docked, Error> {
         let progress = console.progress();
         let PreparedPair { plan, points, .. } = &self.prepared;
-        let outcome = dock_until(plan, points, self.deadline.as_ref(), &progress)?;
+        let outcome = dock_until(plan, points, self.deadline, &progress)?;
         // The record says where the search stopped, so that it can be repeated.
         self.request.options.stopped = outcome.stopped;
         Ok(Docked::new(self, outcome))
@@ -205,14 +205,6 @@ impl Docked {
         let plan = &docking.prepared.plan;
         console.detail(format!("\n{}", outcome_text(plan, outcome)));
         console.detail(format!("\n{}", timings_text(outcome)));
-        if let Some(chosen) = &docking.chosen {
-            let stages = outcome.timing.iter();
-            console.detail(format!(
-                "The search was expected to take {:.1} s, and took {:.1} s",
-                chosen.predicted_seconds,
-                stages.map(|stage| stage.wall_seconds).sum::<f64>()
-            ));
-        }
         console.say(format!(
             "\n{}\n",
             best_clusters(&outcome.poses, &self.quality)

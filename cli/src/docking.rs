@@ -1,17 +1,15 @@
 //! A docking run: planned, described, carried out and written.
 
 use std::path::{Path, PathBuf};
+use std::time::Instant;
 
 use crate::records::recorded_run::RecordedRun;
 use crate::tradeoff::choice::{Wanted, choose};
-use knotdock::dock::cost::{CostModel, Workload, deadline};
 use knotdock::dock::pair::{PreparedPair, Preparer};
-use knotdock::dock::plan::DockPlan;
 use knotdock::options::{Precision, SharpChoice};
 use knotdock::output::files::staging::put_back;
 use knotdock::output::records::manifest::Chosen;
 use knotdock::output::run_folder::Clock;
-use knotdock::search::deadline::Deadline;
 
 use crate::inputs::native::NativeFiles;
 use crate::inputs::request::{Known, Request};
@@ -32,7 +30,7 @@ pub struct Docking {
     pub(super) prepared: PreparedPair,
     pub(super) chosen: Option<Chosen>,
     /// Where the run has a budget.
-    pub(super) deadline: Option<Deadline>,
+    pub(super) deadline: Option<Instant>,
     pub(super) clock: Clock,
 }
 
@@ -56,8 +54,7 @@ impl Docking {
         } else {
             let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
             let end = wanted.budget.and_then(|budget| clock.after(budget));
-            let deadline = end.map(|end| deadline(&prepared.plan, end));
-            (prepared, Some(chosen), deadline)
+            (prepared, Some(chosen), end)
         };
         let plan = &prepared.plan;
         let sides = arrangement.sides();
@@ -79,13 +76,7 @@ impl Docking {
             }
         }
         console.say(score_text(plan, sides));
-        let seconds = seconds_of(plan);
-        console.say(expected_text(
-            plan,
-            seconds,
-            chosen.as_ref(),
-            request.is_angle,
-        ));
+        console.say(expected_text(plan, chosen.as_ref(), request.is_angle));
         Ok(Self {
             request,
             shown: directory.clone(),
@@ -106,7 +97,8 @@ impl Docking {
 
     /// Seconds that the search is expected to take on this machine.
     pub fn expected_seconds(&self) -> f64 {
-        seconds_of(&self.prepared.plan)
+        let plan = &self.prepared.plan;
+        plan.search_seconds(plan.rotations)
     }
 
     /// The directory of the run, if it holds another run that is not to be replaced.
@@ -135,11 +127,6 @@ impl Docking {
             && run.is_of_this_program()
             && run.is_same_request(inputs, native.as_ref(), &options)
     }
-}
-
-/// Seconds that a search is expected to take.
-fn seconds_of(plan: &DockPlan) -> f64 {
-    CostModel::BUILT_IN.seconds(&Workload::of(plan), plan.rotations, plan.in_flight())
 }
 
 /// The refusal of a directory that holds something else, which `force` would replace.
@@ -174,7 +161,7 @@ fn plan_within(
         .predicted_error
         .map(|error| format!(" and an error of {error:.1e} of the best score"));
     console.detail(format!(
-        "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}; expected are {:.1} s{}",
+        "\nChosen: --rotations {} --tolerance {}{} at a spacing of {:.4}{}",
         options.search.rotations,
         options.kernel.tolerance,
         match options.search.precision {
@@ -182,7 +169,6 @@ fn plan_within(
             Precision::Double => " --precision double",
         },
         prepared.plan.spacing,
-        chosen.predicted_seconds,
         error.unwrap_or_default()
     ));
     Ok((prepared, chosen))

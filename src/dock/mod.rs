@@ -1,6 +1,5 @@
 //! A docking run: from the scene and the options to ranked poses.
 
-pub mod cost;
 mod effect_costs;
 pub mod effect_decisions;
 pub mod memory;

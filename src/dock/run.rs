@@ -8,14 +8,14 @@ use crate::error::no_pose;
 use crate::options::Stopped;
 use crate::pose_space::refine::{AscentLimits, RefinedPose, printed};
 use crate::pose_space::rotations::RotationGroup;
-use crate::progress::Progress;
+use crate::progress::{NoProgress, Progress};
 use crate::rank::candidates::{Candidate, candidates, clusters_of, deduplicated, merge};
 use crate::rank::cluster::RigidBody;
 use crate::rank::ranking::{PoseScorer, Ranking, report};
 use crate::rank::sharp::{optima, settle};
-use crate::rank::time_left::poses_in_time;
+use crate::rank::time_left::{poses_in_time, rescoring_seconds};
 use crate::search::coarse_to_fine::{FineSearched, search_finer};
-use crate::search::deadline::Deadline;
+use crate::search::deadline::{Deadline, left};
 use crate::search::scan::{Scanned, scan};
 use crate::search::scan_engine::ScanEngine;
 use crate::search::schedule::schedule;
@@ -57,9 +57,10 @@ pub fn dock(
     dock_until(plan, points, None, progress)
 }
 
-/// Docks as planned, with as many of the rotations as a deadline leaves time for, if there is one.
+/// Docks as planned, with as many of the rotations as there is time for if the run must end at `deadline`.
 ///
-/// [`DockOutcome::stopped`] says how many those were. A run planned with it as [`DockOptions::stopped`] and docked
+/// The search stops when the time left is what the rest of the run takes, by what poses and rotations were measured to
+/// take. [`DockOutcome::stopped`] says how many rotations that were. A run planned with it as [`DockOptions::stopped`] and docked
 /// without a deadline has the same outcome. Graphics processors search all rotations.
 ///
 /// [`DockOptions::stopped`]: crate::options::DockOptions::stopped
@@ -69,7 +70,7 @@ pub fn dock(
 pub fn dock_until(
     plan: &DockPlan,
     points: &[[f64; 3]],
-    deadline: Option<&Deadline>,
+    deadline: Option<Instant>,
     progress: &dyn Progress,
 ) -> Result<DockOutcome, Error> {
     threads::on(plan.in_flight(), || {
@@ -81,7 +82,7 @@ pub fn dock_until(
 fn dock_on_threads(
     plan: &DockPlan,
     points: &[[f64; 3]],
-    deadline: Option<&Deadline>,
+    deadline: Option<Instant>,
     progress: &dyn Progress,
 ) -> Result<DockOutcome, Error> {
     let mut clock = Stopwatch::start();
@@ -93,7 +94,17 @@ fn dock_on_threads(
         components,
     } = Prepared::new(plan, progress)?;
     clock.lap("prepare");
-    let mut found = find(plan, &engine, deadline, (progress, &mut clock))?;
+    let rescorer = plan.rescorer();
+    let search_end = match deadline {
+        Some(end) => Some(search_deadline(
+            plan,
+            &engine,
+            end,
+            (&scorer, rescorer.as_ref()),
+        )?),
+        None => None,
+    };
+    let mut found = find(plan, &engine, search_end.as_ref(), (progress, &mut clock))?;
     let grid_pose = |peak| engine.grid_pose(&plan.search, peak);
     let mut grid_poses: Vec<Pose> = found.peaks.iter().map(grid_pose).collect();
     // The engine goes before the potentials come, which may take ten times its memory.
@@ -109,7 +120,6 @@ fn dock_on_threads(
     let check = Check::new(&scorer, &grid_poses);
     clock.lap("check");
 
-    let rescorer = plan.rescorer();
     let poses = (&found.peaks[..], &refined[..]);
     let kept = kept(plan, deadline, poses, rescorer.as_ref(), (&check, &body));
     let stopped = found.stopped(plan, kept);
@@ -244,6 +254,57 @@ impl Found {
     }
 }
 
+/// Rotations that are searched to see what their poses take after the search.
+const PROBED: usize = 4;
+/// Share of the poses that are exactly scored, as centres of clusters, in runs of the example pair and of 1AHW.
+const SCORED: f64 = 0.5;
+/// Exact sums that refining a pose takes the time of, as timed on the example pair.
+const REFINING: f64 = 4.0;
+
+/// The deadline of the search of a run that must end at `end`, by the time that poses of a few rotations take.
+fn search_deadline(
+    plan: &DockPlan,
+    engine: &ScanEngine,
+    end: Instant,
+    (scorer, rescorer): (&ExactSum, Option<&Rescorer>),
+) -> Result<Deadline, Error> {
+    let search = &plan.search;
+    let mut groups = schedule(search, true);
+    groups.truncate(PROBED);
+    let mut peaks = scan(search, engine, &groups, search.kept, None, &NoProgress)?.peaks;
+    peaks.truncate(ERROR_POSES);
+    let poses: Vec<Pose> = peaks
+        .iter()
+        .map(|peak| engine.grid_pose(search, peak))
+        .collect();
+    let placed = poses.iter().zip(&peaks);
+    let placed: Vec<RefinedPose> = placed
+        .map(|(pose, peak)| RefinedPose::best_of((printed(pose), peak.score), None))
+        .collect();
+    let rescoring = rescoring_seconds((&peaks, &placed), rescorer);
+    let exact = match &poses[..] {
+        [] => 0.0,
+        poses => Check::new(scorer, poses).seconds,
+    };
+    let options = &plan.options;
+    let scored = if options.ranking.no_cluster {
+        1.0
+    } else {
+        SCORED
+    };
+    let refined = plan.refined().min(search.kept) as f64 / search.kept as f64;
+    Ok(Deadline {
+        end,
+        pose: rescoring + (scored + REFINING * refined) * exact,
+        per_rotation: search.per_rotation,
+        poses: search.kept,
+        finer: options
+            .search
+            .fine_rotations
+            .map_or(0.0, |finer| options.search.fine_share * finer as f64),
+    })
+}
+
 /// Searches the rotations, then the finer ones if the plan has any.
 fn find(
     plan: &DockPlan,
@@ -374,7 +435,7 @@ impl Check {
 /// Number of poses that are carried on: all, or as many as there is time for, or as the run had that is repeated.
 fn kept(
     plan: &DockPlan,
-    deadline: Option<&Deadline>,
+    deadline: Option<Instant>,
     (peaks, refined): (&[Peak], &[RefinedPose]),
     rescorer: Option<&Rescorer>,
     (check, body): (&Check, &RigidBody),
@@ -382,12 +443,12 @@ fn kept(
     match (deadline, plan.options.stopped) {
         (_, Some(stopped)) => stopped.poses.min(peaks.len()),
         (Some(deadline), None) => {
-            let poses = (peaks, refined);
+            let (poses, seconds) = ((peaks, refined), check.seconds);
             poses_in_time(
-                deadline,
+                left(deadline),
                 poses,
                 rescorer,
-                check.seconds,
+                seconds,
                 body,
                 &plan.options,
             )

@@ -1,13 +1,12 @@
 //! Number of poses that can be rescored and scored before a deadline.
 //!
-//! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is
-//! done, on the machine as it then is, and the poses that scored least are left out where time is short.
+//! The search leaves time for all, as far as that can be foreseen from a few poses. The time of a pose is measured again
+//! once the search is done, and the poses that scored least are left out if time is short.
 
 use crate::options::DockOptions;
 use crate::pose_space::refine::RefinedPose;
 use crate::rank::candidates::{candidates, clusters_of};
 use crate::rank::cluster::RigidBody;
-use crate::search::deadline::Deadline;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::terms::pose::Rescorer;
 use std::time::Instant;
@@ -17,9 +16,10 @@ pub(crate) const FEWEST: usize = 100;
 /// Poses that are rescored to see how long one takes.
 const PROBES: usize = 48;
 
-/// The number of poses that are kept, best first. `scoring` is the seconds that the exact score of one takes.
+/// The number of poses that are kept, best first, with so many seconds left. `scoring` is the seconds that the exact score
+/// of one takes.
 pub(crate) fn poses_in_time(
-    deadline: &Deadline,
+    left: f64,
     (peaks, placed): (&[Peak], &[RefinedPose]),
     rescorer: Option<&Rescorer>,
     scoring: f64,
@@ -30,14 +30,7 @@ pub(crate) fn poses_in_time(
     if count <= FEWEST {
         return count;
     }
-    let rescoring = rescorer.map_or(0.0, |rescorer| {
-        let step = count.div_ceil(PROBES);
-        let peaks: Vec<Peak> = peaks.iter().step_by(step).copied().collect();
-        let placed: Vec<RefinedPose> = placed.iter().step_by(step).copied().collect();
-        let started = Instant::now();
-        let probed = candidates(&peaks, &placed, &[], Some(rescorer)).len();
-        started.elapsed().as_secs_f64() / probed.max(1) as f64
-    });
+    let rescoring = rescoring_seconds((peaks, placed), rescorer);
     // Rows are exactly scored: one a cluster, about as many as there are by the search's own scores, or all.
     let scored = if options.ranking.no_cluster {
         1.0
@@ -47,7 +40,23 @@ pub(crate) fn poses_in_time(
         let count = clusters.iter().max().map_or(0, |last| last + 1);
         count as f64 / unscored.len().max(1) as f64
     };
-    within(deadline.left(), rescoring + scored * scoring, count)
+    within(left, rescoring + scored * scoring, count)
+}
+
+/// Seconds that rescoring a pose takes, by some of those given.
+pub(crate) fn rescoring_seconds(
+    (peaks, placed): (&[Peak], &[RefinedPose]),
+    rescorer: Option<&Rescorer>,
+) -> f64 {
+    let Some(rescorer) = rescorer else {
+        return 0.0;
+    };
+    let step = peaks.len().div_ceil(PROBES).max(1);
+    let peaks: Vec<Peak> = peaks.iter().step_by(step).copied().collect();
+    let placed: Vec<RefinedPose> = placed.iter().step_by(step).copied().collect();
+    let started = Instant::now();
+    let probed = candidates(&peaks, &placed, &[], Some(rescorer)).len();
+    started.elapsed().as_secs_f64() / probed.max(1) as f64
 }
 
 /// How many poses of `count` fit into the seconds left, [`FEWEST`] at least.

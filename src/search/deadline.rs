@@ -1,77 +1,64 @@
-//! The time by which a run must end.
+//! The time by which a search must stop for the run to end in time.
 
 use std::time::Instant;
 
-/// A time by which a run must end, and what remains to be done after its search.
-pub struct Deadline {
-    end: Instant,
-    /// Seconds on the clock for a rotation, as expected.
-    rotation: f64,
-    /// Seconds on the clock for what follows a search of so many rotations, likewise.
-    rest: Box<dyn Fn(usize) -> f64 + Send + Sync>,
-}
+/// Time of a finer rotation against one of the first search, whose transform of the ligand several share. As measured on
+/// the example pair.
+const FINE: f64 = 2.1;
 
-impl std::fmt::Debug for Deadline {
-    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        let Self { end, rotation, .. } = self;
-        write!(f, "Deadline {{ end: {end:?}, rotation: {rotation} }}")
-    }
+/// When a run must end, and what remains to be done after its search.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deadline {
+    /// When the run must end.
+    pub end: Instant,
+    /// Seconds after the search for each pose that is kept, as measured in this run.
+    pub pose: f64,
+    /// Peaks kept of each rotation.
+    pub per_rotation: usize,
+    /// Poses kept of all.
+    pub poses: usize,
+    /// Finer rotations that follow.
+    pub finer: f64,
 }
 
 impl Deadline {
-    /// A run that ends at `end`. `rotation` is the seconds on the clock that a rotation of the search is expected to
-    /// take, all threads working, and `rest` what follows a search of so many rotations.
-    pub fn new(
-        end: Instant,
-        rotation: f64,
-        rest: impl Fn(usize) -> f64 + Send + Sync + 'static,
-    ) -> Self {
-        Self {
-            end,
-            rotation,
-            rest: Box::new(rest),
-        }
-    }
-
-    /// Seconds until then.
-    pub(crate) fn left(&self) -> f64 {
-        self.end
-            .saturating_duration_since(Instant::now())
-            .as_secs_f64()
-    }
-
     /// Whether a search that began at `started` and has done so many rotations must stop.
-    pub(crate) fn is_reached(&self, started: Instant, done: usize) -> bool {
-        self.must_stop(started.elapsed().as_secs_f64(), self.left(), done)
+    pub fn is_reached(&self, started: Instant, done: usize) -> bool {
+        self.must_stop(started.elapsed().as_secs_f64(), left(self.end), done)
     }
 
-    /// Whether the seconds left are no more than the rest of the run takes at the pace of the search. Other programs
-    /// slow the rest as they slowed the search.
+    /// Whether the seconds left are no more than the rest of the run takes.
     fn must_stop(&self, searching: f64, left: f64, done: usize) -> bool {
-        let pace = match done {
-            0 => 1.0,
-            done => searching / (self.rotation * done as f64),
-        };
-        left <= pace * (self.rest)(done)
+        let poses = self.poses.min(self.per_rotation * done);
+        let rotation = searching / done.max(1) as f64;
+        left <= self.pose * poses as f64 + FINE * self.finer * rotation
     }
+}
+
+/// Seconds until a time.
+pub(crate) fn left(end: Instant) -> f64 {
+    end.saturating_duration_since(Instant::now()).as_secs_f64()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
 
-    /// Times are what the search took, not what it was expected to.
     #[test]
-    fn a_slow_machine_stops_earlier() {
-        let deadline = Deadline::new(Instant::now(), 0.01, |rotations| {
-            0.5 + 0.001 * rotations as f64
-        });
-        // As expected: 100 rotations in a second, 0.6 s to go.
-        assert!(!deadline.must_stop(1.0, 0.61, 100));
-        assert!(deadline.must_stop(1.0, 0.59, 100));
-        // Four times as slow.
-        assert!(deadline.must_stop(4.0, 2.39, 100));
-        assert!(!deadline.must_stop(4.0, 2.41, 100));
+    fn a_search_leaves_time_for_the_rest() {
+        let deadline = Deadline {
+            end: Instant::now(),
+            pose: 0.001,
+            per_rotation: 3,
+            poses: 2000,
+            finer: 100.0,
+        };
+        // 300 poses, and 100 finer rotations of 21 ms.
+        assert!(!deadline.must_stop(1.0, 2.41, 100));
+        assert!(deadline.must_stop(1.0, 2.39, 100));
+        // No more poses are kept than the most.
+        assert!(!deadline.must_stop(10.0, 4.11, 1000));
+        assert!(deadline.must_stop(10.0, 4.09, 1000));
         assert!(deadline.must_stop(0.0, 0.0, 0));
         assert!(deadline.is_reached(Instant::now(), 0));
     }

@@ -2,7 +2,7 @@
 
 pub(crate) mod allowed;
 pub mod coarse_to_fine;
-pub mod deadline;
+pub(crate) mod deadline;
 pub mod plan;
 pub(crate) mod scan;
 pub mod scan_engine;

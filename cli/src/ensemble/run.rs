@@ -145,7 +145,7 @@ impl Ensemble {
         let seconds = each * count as f64;
         let [receptors, ligands] = self.aligned.sides.each_ref().map(Vec::len);
         console.say(format!(
-            "\n{}: {} of the receptor with {ligands} of the ligand, one after another; expected are {} in all, {} \
+            "\n{}: {} of the receptor with {ligands} of the ligand, one after another; about {} of search in all, {} \
              each, and at most {:.0} MB",
             counted(count, "run"),
             counted(receptors, "conformation"),

@@ -69,16 +69,10 @@ fn unknown_text(labels: &LabelReport) -> Option<String> {
 /// Largest angle between rotations that anybody searches by, degrees.
 const LARGEST_ANGLE: usize = 30;
 
-/// How many rotations are searched, and the time and memory that the search is expected to take; of the CPU in
-/// `seconds`, if they are known.
+/// How many rotations are searched, and the time and memory that the search is expected to take.
 ///
 /// A number of rotations that may be meant as an angle is answered with that angle's, unless it `is_angle`.
-pub fn expected_text(
-    plan: &DockPlan,
-    seconds: f64,
-    chosen: Option<&Chosen>,
-    is_angle: bool,
-) -> String {
+pub fn expected_text(plan: &DockPlan, chosen: Option<&Chosen>, is_angle: bool) -> String {
     let rotations = plan.search.space.sampled(plan.rotations);
     let mut text = format!("Searches {} {rotations}", plan.rotations);
     if plan.options.search.symmetry.is_none() {
@@ -99,8 +93,8 @@ pub fn expected_text(
     text += &match plan.options.search.engine {
         EngineChoice::Gpu => format!(" on a graphics processor, in {memory:.0} MB"),
         EngineChoice::Cpu => format!(
-            ": about {} and {memory:.0} MB on {}",
-            time_text(seconds),
+            ": about {} of search and {memory:.0} MB on {}",
+            time_text(plan.search_seconds(plan.rotations)),
             counted(plan.in_flight(), "thread")
         ),
     };

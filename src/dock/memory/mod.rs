@@ -10,7 +10,7 @@ use crate::options::{DockOptions, EngineChoice, KernelOptions};
 use crate::pose_space::PoseSpace;
 use knotdock_scoring::engine::Plan;
 use knotdock_structures::Error;
-use stages::{MemoryStage, Sizes};
+use stages::Sizes;
 
 /// Bytes that rotations in flight may take of a graphics processor's memory, which may be the computer's own.
 const GRAPHICS_BYTES: u64 = 512 << 20;
@@ -100,9 +100,9 @@ impl MemoryPlan {
         self.sizes.peak(self.in_flight) + self.graphics
     }
 
-    /// The stage that takes the most, with its parts.
-    pub fn largest(&self) -> Option<MemoryStage> {
-        self.sizes.largest(self.in_flight)
+    /// The stage that takes the most.
+    pub fn largest(&self) -> &'static str {
+        self.sizes.largest(self.in_flight).0
     }
 }
 

@@ -1,7 +1,7 @@
-//! Memory of a run by stage: what is held at once in each, in named parts.
+//! Memory of a run by stage: one formula each, of the sizes of what the stage makes, so that the plan follows the code.
 //!
 //! A stage begins with what the process held when the run was planned: the program, the inputs and what was made of
-//! them. Each part is computed from the sizes of what the stage makes, so that the plan follows the code.
+//! them.
 
 use crate::dock::memory::process;
 use crate::dock::scene::{LengthUnit, Scene};
@@ -10,7 +10,6 @@ use crate::pose_space::PoseSpace;
 use crate::pose_space::refine::RefinedPose;
 use crate::pose_space::rotations::RotationGroup;
 use crate::rank::candidates::Candidate;
-use crate::rank::cluster::PlacedBody;
 use crate::rank::ranking::RankedPose;
 use knotdock_scoring::engine::{EngineMemory, Plan};
 use knotdock_scoring::peaks::Peak;
@@ -18,7 +17,6 @@ use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::so3::{BYTES_RELAXED, MAX_RELAXED};
 use nalgebra::UnitQuaternion;
-use serde::Serialize;
 
 /// Components of the compressed lifted axis that a plan allows for: 7 to 9 in measured runs with all effects on, for
 /// tolerances from 1e-2 to 1e-6.
@@ -37,37 +35,18 @@ const ATOM_SCORED: u64 = 640;
 const TERM_TABLES: u64 = 2 << 20;
 /// Bytes of an atom in a complex that is being written, with its line.
 const ATOM_WRITTEN: u64 = 1 << 8;
-/// Bytes of a row's values against a known complex.
-const QUALITY: u64 = 384;
+/// Bytes of a peak.
+const PEAK: u64 = size_of::<Peak>() as u64;
+/// Bytes of a pose when its table is made, which is when it takes the most: as a candidate, in its cluster (which one,
+/// whether it is distinct, and of each cluster size, weight, centre and place), and as a row, of which sorting takes half
+/// again.
+const RANKED: u64 = (size_of::<Candidate>()
+    + 10 * size_of::<usize>()
+    + (size_of::<RankedPose>() + size_of::<usize>()) * 3 / 2) as u64;
 /// Bytes of a thread: its stack, and buffers that its allocator keeps.
 const THREAD: u64 = 1 << 20;
 /// One part in so many of a stage's memory is lost between buffers: measured, 6% to 19% of what is alive on one thread.
 const ALLOCATOR: u64 = 6;
-
-/// A part of the memory of a stage.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-pub struct MemoryPart {
-    /// What takes it.
-    pub name: &'static str,
-    /// Bytes.
-    pub bytes: u64,
-}
-
-/// A stage of a run with the memory that it takes.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct MemoryStage {
-    /// Name of the stage, as `timing` in run.json has it where it is one of these.
-    pub stage: &'static str,
-    /// What is held in it at once.
-    pub parts: Vec<MemoryPart>,
-}
-
-impl MemoryStage {
-    /// Bytes of the whole stage.
-    pub fn bytes(&self) -> u64 {
-        self.parts.iter().map(|part| part.bytes).sum()
-    }
-}
 
 /// Sizes that decide what a run takes. All but `held` and `read` follow from the inputs and options.
 #[derive(Clone, Debug, PartialEq)]
@@ -94,6 +73,12 @@ pub(super) struct Sizes {
     poses: u64,
     /// Whether poses are refined.
     is_refined: bool,
+}
+
+/// The stage of the most bytes.
+fn largest<const N: usize>(stages: [(&'static str, u64); N]) -> (&'static str, u64) {
+    let largest = stages.into_iter().max_by_key(|(_, bytes)| *bytes);
+    largest.expect("a run has stages")
 }
 
 impl Sizes {
@@ -133,94 +118,101 @@ impl Sizes {
         }
     }
 
-    /// Bytes of a rotation in flight at a rank: its workspace, and the peaks of its thread.
-    pub fn in_flight(&self, rank: usize) -> u64 {
-        let peaks = 2 * self.scanned() + self.per_rotation;
-        self.workspace(rank) + size_of::<Peak>() as u64 * peaks + THREAD
-    }
-
-    /// Bytes of a workspace for all images of a rotation.
-    fn workspace(&self, rank: usize) -> u64 {
-        self.engine.workspace_of(rank, self.images as usize)
-    }
-
-    /// Bytes of a rotation in flight at the expected rank.
+    /// Bytes of a rotation in flight at the expected rank: its workspace, and the peaks of its thread.
     pub fn expected_in_flight(&self) -> u64 {
         self.in_flight(self.rank)
     }
 
     /// Bytes of the largest stage without rotations in flight, and without what was held before.
     pub fn fixed(&self) -> u64 {
-        let stages = self.stages(0, self.rank);
-        let own = stages
-            .iter()
-            .map(|stage| stage.bytes().saturating_sub(self.held));
-        // Reading is the first stage, and not the plan's.
-        own.skip(1).max().unwrap_or(0)
+        largest(self.stages(0)).1.saturating_sub(self.held)
     }
 
     /// Bytes of the run's largest stage.
     pub fn peak(&self, rotations: usize) -> u64 {
-        let stages = self.stages(rotations, self.rank);
-        stages.iter().map(MemoryStage::bytes).max().unwrap_or(0)
+        self.largest(rotations).1
     }
 
-    /// The run's largest stage.
-    pub fn largest(&self, rotations: usize) -> Option<MemoryStage> {
-        let stages = self.stages(rotations, self.rank).into_iter();
-        stages.max_by_key(MemoryStage::bytes)
+    /// The run's largest stage, and its bytes.
+    pub fn largest(&self, rotations: usize) -> (&'static str, u64) {
+        largest([("read", self.read), largest(self.stages(rotations))])
     }
 
     /// Bytes of the search with so many rotations in flight, at a rank that is known.
     pub fn search_peak(&self, rotations: usize, rank: usize) -> u64 {
-        self.search(rotations, rank).bytes()
+        self.whole(self.search(rotations as u64, rank))
     }
 
-    /// All stages in their order, with an engine of a rank.
-    fn stages(&self, rotations: usize, rank: usize) -> Vec<MemoryStage> {
-        let mut stages = vec![
-            MemoryStage {
-                stage: "read",
-                parts: vec![MemoryPart {
-                    name: "inputs",
-                    bytes: self.read,
-                }],
-            },
-            self.plan(),
-            self.prepare(rotations),
-            self.search(rotations, rank),
-        ];
-        if self.rotations[1] > 0 {
-            stages.push(self.fine(rotations, rank));
-        }
-        stages.extend([
-            self.refine(rotations),
-            self.rescore(rotations),
-            self.cluster(rotations),
-            self.score(rotations),
-            self.write(),
-        ]);
-        stages
-    }
-
-    /// A stage of parts beside what was held before.
-    fn stage(&self, stage: &'static str, own: &[(&'static str, u64)]) -> MemoryStage {
-        let bytes = own.iter().map(|(_, bytes)| bytes).sum::<u64>();
+    /// A stage with so many bytes of its own, beside what was held before it.
+    fn whole(&self, own: u64) -> u64 {
         let rotations =
             size_of::<UnitQuaternion<f64>>() as u64 * self.rotations.iter().sum::<u64>();
-        let common = [
-            ("held before", self.held),
-            ("code", CODE),
-            ("rotations", rotations),
-            ("allocator", bytes / ALLOCATOR),
-        ];
-        let parts = common.iter().chain(own).filter(|(_, bytes)| *bytes > 0);
-        MemoryStage {
-            stage,
-            parts: parts
-                .map(|&(name, bytes)| MemoryPart { name, bytes })
-                .collect(),
-        }
+        self.held + CODE + rotations + own + own / ALLOCATOR
+    }
+
+    /// The stages after reading.
+    fn stages(&self, rotations: usize) -> [(&'static str, u64); 6] {
+        let (rotations, rank) = (rotations as u64, self.rank);
+        let threads = THREAD * rotations;
+        let relaxed = |count: u64| BYTES_RELAXED * count.min(MAX_RELAXED as u64);
+        let [coarse, finer] = self.rotations;
+        let engine = &self.engine;
+        let whole = engine.choice(engine.without(None).rank);
+        let transforms = rotations.max(1) * engine.transform;
+        // The finer search keeps all peaks, and what the first one found in cells.
+        let peaks = 2 * (self.searched_finer + self.images) * self.per_rotation
+            + 2 * self.scanned()
+            + coarse * self.per_rotation;
+        let groups = size_of::<RotationGroup>() as u64 * finer.div_ceil(self.images) + 8 * finer;
+        let fine = self.kept_spectra()
+            + rank as u64 * engine.component
+            + rotations * (self.workspace(rank) + THREAD)
+            + PEAK * peaks
+            + groups;
+        let refined = PEAK + size_of::<RefinedPose>() as u64 + size_of::<Pose>() as u64;
+        [
+            ("plan", relaxed(coarse).max(relaxed(finer))),
+            (
+                "prepare",
+                self.spectra() + whole.max(transforms) + self.scorers() + threads,
+            ),
+            ("search", self.search(rotations, rank)),
+            ("fine", if finer > 0 { fine + self.scorers() } else { 0 }),
+            (
+                "refine",
+                self.kept_spectra()
+                    + self.potential_grid
+                    + refined * self.poses
+                    + self.scorers()
+                    + threads,
+            ),
+            (
+                "rank",
+                RANKED * self.poses + ATOM_WRITTEN * self.atoms + self.scorers() + threads,
+            ),
+        ]
+        .map(|(stage, own)| (stage, self.whole(own)))
+    }
+
+    fn search(&self, rotations: u64, rank: usize) -> u64 {
+        let groups = size_of::<RotationGroup>() as u64 * self.groups();
+        let lists = 2 * rotations * self.scanned() * PEAK;
+        self.kept_spectra()
+            + rank as u64 * self.engine.component
+            + rotations * self.in_flight(rank)
+            + self.scorers()
+            + lists
+            + groups
+    }
+
+    fn in_flight(&self, rank: usize) -> u64 {
+        let peaks = 2 * self.scanned() + self.per_rotation;
+        self.workspace(rank) + PEAK * peaks + THREAD
+    }
+
+    /// Bytes of a workspace for all images of a rotation.
+    fn workspace(&self, rank: usize) -> u64 {
+        self.engine.workspace_of(rank, self.images as usize)
     }
 
     /// Peaks that the first search keeps.
@@ -232,10 +224,6 @@ impl Sizes {
     /// Groups of the first search.
     fn groups(&self) -> u64 {
         self.rotations[0].div_ceil(self.images)
-    }
-
-    fn threads(&self, rotations: usize) -> u64 {
-        THREAD * rotations as u64
     }
 
     /// The exact score and the pose terms.
@@ -253,151 +241,8 @@ impl Sizes {
         self.engine.spectrum * self.engine.without(None).functions as u64
     }
 
-    fn plan(&self) -> MemoryStage {
-        let relaxed = |count: &u64| BYTES_RELAXED * (*count).min(MAX_RELAXED as u64);
-        let relaxing = self.rotations.iter().map(relaxed).max().unwrap_or(0);
-        self.stage("plan", &[("relaxing rotations", relaxing)])
-    }
-
-    /// The receptor is transformed and the rank chosen.
-    fn prepare(&self, rotations: usize) -> MemoryStage {
-        let engine = &self.engine;
-        let whole = engine.choice(engine.without(None).rank);
-        let transforms = rotations.max(1) as u64 * engine.transform;
-        self.stage(
-            "prepare",
-            &[
-                ("spectra", self.spectra()),
-                ("engines", whole.max(transforms)),
-                ("scorers", self.scorers()),
-                ("threads", self.threads(rotations)),
-            ],
-        )
-    }
-
-    fn search(&self, rotations: usize, rank: usize) -> MemoryStage {
-        let peak = size_of::<Peak>() as u64;
-        let groups = size_of::<RotationGroup>() as u64 * self.groups();
-        let lists = 2 * rotations as u64 * self.scanned() * peak;
-        self.stage(
-            "search",
-            &[
-                ("spectra", if self.is_refined { self.spectra() } else { 0 }),
-                ("engines", self.engines(rank)),
-                (
-                    "rotations in flight",
-                    rotations as u64 * self.in_flight(rank),
-                ),
-                ("scorers", self.scorers()),
-                ("peaks", lists + groups),
-            ],
-        )
-    }
-
-    fn engines(&self, rank: usize) -> u64 {
-        rank as u64 * self.engine.component
-    }
-
-    /// The finer search keeps all peaks.
-    fn fine(&self, rotations: usize, rank: usize) -> MemoryStage {
-        let peak = size_of::<Peak>() as u64;
-        let [coarse, finer] = self.rotations;
-        let found = (self.searched_finer + self.images) * self.per_rotation;
-        let cells = coarse * self.per_rotation;
-        let groups = size_of::<RotationGroup>() as u64 * finer.div_ceil(self.images);
-        let in_flight = self.workspace(rank) + THREAD;
-        self.stage(
-            "fine",
-            &[
-                ("spectra", if self.is_refined { self.spectra() } else { 0 }),
-                ("engines", self.engines(rank)),
-                ("rotations in flight", rotations as u64 * in_flight),
-                ("scorers", self.scorers()),
-                (
-                    "peaks",
-                    peak * (2 * found + 2 * self.scanned() + cells) + groups + 8 * finer,
-                ),
-            ],
-        )
-    }
-
-    /// Peaks and where they led to.
-    fn placed(&self) -> u64 {
-        (size_of::<Peak>() + size_of::<RefinedPose>()) as u64 * self.poses
-    }
-
-    fn refine(&self, rotations: usize) -> MemoryStage {
-        let grid_poses = size_of::<Pose>() as u64 * self.poses;
-        self.stage(
-            "refine",
-            &[
-                ("spectra", if self.is_refined { self.spectra() } else { 0 }),
-                ("potential grid", self.potential_grid),
-                ("poses", self.placed() + grid_poses),
-                ("scorers", self.scorers()),
-                ("threads", self.threads(rotations)),
-            ],
-        )
-    }
-
-    /// Bytes of all candidates.
-    fn candidates(&self) -> u64 {
-        size_of::<Candidate>() as u64 * self.poses
-    }
-
-    fn rescore(&self, rotations: usize) -> MemoryStage {
-        self.stage(
-            "rescore",
-            &[
-                ("poses", self.placed()),
-                // Sorting takes half of them again.
-                ("candidates", self.candidates() * 3 / 2),
-                ("scorers", self.scorers()),
-                ("threads", self.threads(rotations)),
-            ],
-        )
-    }
-
-    fn cluster(&self, rotations: usize) -> MemoryStage {
-        let body = size_of::<Pose>() + size_of::<PlacedBody>() + 2 * size_of::<usize>();
-        self.stage(
-            "cluster",
-            &[
-                ("candidates", self.candidates()),
-                ("clusters", body as u64 * self.poses),
-                ("scorers", self.scorers()),
-                ("threads", self.threads(rotations)),
-            ],
-        )
-    }
-
-    fn score(&self, rotations: usize) -> MemoryStage {
-        // Cluster of each pose, whether it is distinct, and of each cluster size, weight, centre and place.
-        let clusters = 10 * size_of::<usize>() as u64 * self.poses;
-        let row = (size_of::<RankedPose>() + size_of::<usize>()) as u64;
-        self.stage(
-            "score",
-            &[
-                ("candidates", self.candidates()),
-                ("clusters", clusters),
-                // Sorting takes half of them again.
-                ("rows", row * self.poses * 3 / 2),
-                ("scorers", self.scorers()),
-                ("threads", self.threads(rotations)),
-            ],
-        )
-    }
-
-    fn write(&self) -> MemoryStage {
-        let row = (size_of::<RankedPose>() + size_of::<(usize, Pose)>()) as u64 + QUALITY;
-        self.stage(
-            "write",
-            &[
-                ("rows", row * self.poses),
-                ("complexes", ATOM_WRITTEN * self.atoms),
-                // The allocator may keep what the scores took.
-                ("scorers", self.scorers()),
-            ],
-        )
+    /// Spectra that are kept for refining.
+    fn kept_spectra(&self) -> u64 {
+        if self.is_refined { self.spectra() } else { 0 }
     }
 }

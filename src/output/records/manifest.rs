@@ -11,7 +11,6 @@ use knotdock_structures::molecule::{ChainMap, Molecule};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::dock::memory::stages::MemoryStage;
 use crate::dock::outcome::MeasuredError;
 use crate::dock::outcome::{DockOutcome, EffectCost, SharpOutcome, StageTime};
 use crate::dock::plan::DockPlan;
@@ -131,8 +130,6 @@ pub struct Chosen {
     pub accuracy: Option<f64>,
     /// Seconds that were requested.
     pub budget_seconds: Option<f64>,
-    /// Seconds on the clock that the run is expected to take.
-    pub predicted_seconds: f64,
     /// Error that is expected, where the setting was chosen by it.
     pub predicted_error: Option<f64>,
 }
@@ -152,8 +149,8 @@ pub struct Machine {
     pub rotations_in_flight: usize,
     /// Memory that the run was expected to take, in bytes.
     pub memory_estimate_bytes: u64,
-    /// The stage that was expected to take it, with its parts in bytes.
-    pub memory_stage: Option<MemoryStage>,
+    /// The stage that was expected to take it.
+    pub memory_stage: &'static str,
     /// Memory that the run was given, in bytes; `null` for no limit.
     pub memory_limit_bytes: Option<u64>,
     /// The graphics processor that correlated; `null` where none did.
