@@ -71,7 +71,7 @@ fn all_effects_of_a_pair_of_proteins() {
     .join(" ");
     hold_to_cpu(
         folder.path(),
-        &format!("{pair} --rotations 100 --no-cluster"),
+        &format!("{pair} --rotations 48 --resolution 6 --poses 400 --no-cluster"),
     );
 }
 
@@ -110,7 +110,7 @@ fn the_same_bytes_each_time() {
         return;
     }
     let folder = place();
-    let words = "dock receptor.pdb ligand.pdb --rotations 150 --engine gpu --quiet";
+    let words = "dock receptor.pdb ligand.pdb --rotations 60 --engine gpu --quiet";
     run(folder.path(), &format!("{words} --threads 1 -o one"));
     run(folder.path(), &format!("{words} --threads 2 -o two"));
     run(folder.path(), "dock --rerun one/run.json -o again --quiet");
@@ -128,7 +128,7 @@ fn cores_leave_the_card_its_share_of_the_memory() {
         return;
     }
     let folder = place();
-    let words = "dock receptor.pdb ligand.pdb --rotations 1000 --engine gpu --quiet -o run";
+    let words = "dock receptor.pdb ligand.pdb --rotations 60 --resolution 8 --engine gpu --quiet -o run";
     run(
         folder.path(),
         &format!("{words} --threads 1000 --memory 400M"),

@@ -100,11 +100,12 @@ fn surface_and_score_are_those_of_the_pose_in_place() {
     let folder = place();
     let scored = run(
         folder.path(),
-        "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --json",
+        "score receptor.pdb ligand.pdb --pose 1,0,0,0,0,0,0 --config kernel.resolution=16 --json",
     );
     let scored: Value = serde_json::from_str(&scored).unwrap();
     for words in ["complex.pdb", "complex.pdb E I"] {
-        let found = &described(folder.path(), words)[0];
+        let words = format!("{words} --config kernel.resolution=16");
+        let found = &described(folder.path(), &words)[0];
         let close = |name: &str, expected: &Value| {
             let (a, b) = (found[name].as_f64().unwrap(), expected.as_f64().unwrap());
             assert!((a - b).abs() <= 1e-9 * b.abs(), "{name}: {a} {b}");

@@ -87,7 +87,14 @@ fn the_example_pair_reaches_its_exact_score() {
     let reported = score(
         &receptor,
         &ligand,
-        &["--pose", "1,0,0,0,0,0,0", "--modes", "1000"],
+        &[
+            "--pose",
+            "1,0,0,0,0,0,0",
+            "--modes",
+            "1000",
+            "--config",
+            "kernel.resolution=8",
+        ],
     );
     let rows = check(&reported);
     assert!(rows.iter().any(|row| row["modes"] == 1000));

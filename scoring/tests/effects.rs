@@ -145,7 +145,7 @@ fn each_term_alone_and_all_together_meet_the_requested_tolerance() {
     let (a, b) = (cloud(160, 12.0, 1), cloud(60, 8.0, 2));
     let alone = Effect::ALL.into_iter().skip(1).map(Some);
     for effect in alone.chain([None]) {
-        for tolerance in [1e-2, 1e-3, 1e-4, 1e-6] {
+        for tolerance in [1e-2, 1e-4, 1e-6] {
             let error = worst(Precision::Double, &a, &b, tolerance, effect);
             assert!(error <= tolerance, "{effect:?} at {tolerance:e}: {error:e}");
         }

@@ -148,8 +148,8 @@ fn a_single_knot_and_balls_of_many_sizes() {
     assert!(share < 3e-5, "one knot: {share}");
     let share = difference(&gpu, &one, &one, engine_options(1e-3));
     assert!(share < 3e-5, "two knots: {share}");
-    let sizes = [1.0, 2.0, 4.0, 8.0, 15.0, 30.0];
-    let (a, b) = (cloud(60, 40.0, &sizes, 7), cloud(24, 20.0, &sizes, 8));
+    let sizes = [1.0, 2.0, 4.0, 8.0, 15.0];
+    let (a, b) = (cloud(60, 20.0, &sizes, 7), cloud(24, 10.0, &sizes, 8));
     let share = difference(&gpu, &a, &b, engine_options(1e-2));
     let cpu = single_difference(&a, &b, engine_options(1e-2));
     println!("many sizes: {share:.1e}, {cpu:.1e} on the CPU");
@@ -255,7 +255,7 @@ fn batches_change_no_bit() {
     let Some(gpu) = adapter() else { return };
     let (a, b) = (cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
     let pair = Pair::new(Precision::Single, &a, &b, engine_options(1e-2));
-    let turns: Vec<Turn> = rotations(40, 11)
+    let turns: Vec<Turn> = rotations(16, 11)
         .into_iter()
         .enumerate()
         .map(|(index, rotation)| Turn {

@@ -145,7 +145,7 @@ mod tests {
     /// Flat sheets a gap apart match by exp(-gap^2 / 2) everywhere, but for what is left of their balls.
     #[test]
     fn flat_sheets_match_by_their_gap() {
-        for gap in [0.0, 0.5, 1.0] {
+        for gap in [0.0, 1.0] {
             let [one, other] = [sheet(0.0), sheet(3.4 + gap)];
             let found = of_balls([&one, &other]).unwrap();
             let expected = (-0.5 * gap * gap).exp();

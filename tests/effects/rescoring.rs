@@ -15,6 +15,8 @@ fn rescoring_orders_poses_and_changes_no_score() {
             "40",
             "--no-cluster",
             "--diagnostics",
+            "--resolution",
+            "8",
         ];
         all.extend(["--config", "restraints.peptidase_weight=0"]);
         all.extend(["--config", "terms.unresolved_weight=0"]);

@@ -2,7 +2,7 @@
 //! against the pair sum.
 //!
 //! Clouds of knots have no surface, no dense core and no waters' worth of holes; what the tables were tuned on could
-//! hide there. Both references are too slow for all modes and all voxels of a protein, so 2,000 modes and 200 poses
+//! hide there. Both references are too slow for all modes and all voxels of a protein, so 500 modes and 200 poses
 //! are drawn.
 
 use crate::scene::{Numbers, Pair, engine_options, some_rotation};
@@ -18,7 +18,7 @@ use rayon::prelude::*;
 use std::f64::consts::PI;
 use std::path::Path;
 
-const MODES: usize = 2_000;
+const MODES: usize = 500;
 const POSES: usize = 200;
 
 fn example(name: &str) -> Knots {
@@ -145,7 +145,7 @@ fn direct(
             let w = mode.map(|wave| wave.frequency);
             let length = w.iter().map(|x| x * x).sum::<f64>().sqrt();
             let classes = [receptor.classes(w), ligand.classes(w)];
-            if place % 500 == 0 {
+            if place % 100 == 0 {
                 for (body, classes) in [&receptor, &ligand].into_iter().zip(&classes) {
                     let eta = plan.axis().eta(last);
                     let plain = ndft_4d(&body.centers, &body.radii, &body.weights, w, eta);
@@ -230,14 +230,14 @@ fn proteins_meet_the_tolerance_mode_by_mode_and_pose_by_pose() {
             "{precision} at {tolerance:e}: pose {pose:e}"
         );
     };
-    for tolerance in [1e-2, 1e-3, 1e-4, 1e-5, 1e-6] {
+    for tolerance in [1e-2, 1e-4, 1e-6] {
         check(
             "f64",
             tolerance,
             errors(Precision::Double, &a, &b, tolerance),
         );
     }
-    for tolerance in [1e-2, 1e-3, 1e-4] {
+    for tolerance in [1e-2, 1e-4] {
         check(
             "f32",
             tolerance,
