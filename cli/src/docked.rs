@@ -9,13 +9,13 @@ use crate::inputs::native::measure;
 use crate::inputs::request::Known;
 use crate::messages::console::Console;
 use crate::messages::dock::{
-    cost_text, error_warning, few_rotations_warning, next_text, outcome_text, restraints_warning,
-    timings_text,
+    cost_text, error_warning, next_text, outcome_text, restraints_warning, timings_text,
 };
 use crate::report::{MAX_ROWS, RunReport, Viewer};
 use crate::shards::WIDE_COLUMNS;
 use crate::tables::batch_results::RunSummary;
-use crate::tables::report::{BEST, best_clusters, firsts};
+use crate::tables::report::{BEST, best_clusters, counted, firsts};
+use crate::tradeoff::choice::MIN_ROTATIONS;
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::PreparedPair;
 use knotdock::dock::run::dock_until;
@@ -216,4 +216,16 @@ impl Docked {
             !output.no_report,
         ));
     }
+}
+
+/// Warning that a deadline left time for too few rotations.
+fn few_rotations_warning(outcome: &DockOutcome, has_deadline: bool) -> Option<String> {
+    let few = has_deadline && outcome.searched < MIN_ROTATIONS;
+    few.then(|| {
+        format!(
+            "the budget left time for {} only, and fewer than {MIN_ROTATIONS} find little: allow more time, or leave \
+             more of the machine to the run",
+            counted(outcome.searched, "rotation")
+        )
+    })
 }

@@ -111,7 +111,7 @@ impl Bodies {
             }
             Self::Meshes(inputs) => {
                 for (side, input) in SIDES.into_iter().zip(inputs.as_ref()) {
-                    input.describe(side, console);
+                    input.file.describe(side, console);
                 }
             }
         }
@@ -188,7 +188,7 @@ impl Bodies {
     pub fn records(&self) -> [&InputRecord; 2] {
         match self {
             Self::Molecules(inputs) => inputs.each_ref().map(|input| &input.record),
-            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.record),
+            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.file.record),
         }
     }
 
@@ -258,7 +258,7 @@ pub fn sampled(
     room_to_sample(sampling.per_axis, options.machine.memory)?;
     let solids = inputs.each_ref().map(ShapeInput::shape);
     let sampling = Sampling::of(solids, &sampling).map_err(|error| match error.part {
-        Some(part) => error.error.at(&inputs[part].record.path),
+        Some(part) => error.error.at(&inputs[part].file.record.path),
         None => error.error,
     })?;
     sampled_defaults(&sampling.pair, options, lengths);

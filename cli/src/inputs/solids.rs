@@ -36,15 +36,31 @@ pub struct SolidArguments {
     pub input: OptionArguments<OfReading>,
 }
 
+/// A file as read, in words.
 #[derive(Clone)]
-pub struct SolidInput {
+pub struct ReadFile {
     /// File, the part of it that was read, and checksum.
     pub record: InputRecord,
+    description: String,
+    warnings: Vec<String>,
+}
+
+impl ReadFile {
+    /// Describes what was read, under the name of its side, and warns.
+    pub fn describe(&self, side: &str, console: Console) {
+        console.say(format!("{side}: {}", self.description));
+        for warning in &self.warnings {
+            console.warn(format!("{}: {warning}", self.record.path.display()));
+        }
+    }
+}
+
+#[derive(Clone)]
+pub struct SolidInput {
+    file: ReadFile,
     /// Kind of the file: mesh, molecule or balls.
     kind: &'static str,
     pub solid: BallSolid,
-    report: String,
-    warnings: Vec<String>,
     sampling: Option<MeshSampling>,
 }
 
@@ -69,15 +85,12 @@ impl SolidInput {
     }
 
     fn of_balls(spec: &InputSpec) -> Result<Self, Error> {
-        let input = BallFileInput::read(spec)?;
-        let file = &input.file;
-        let solid = BallSolid::from_balls(&file.balls, file.weights.as_deref())
+        let (file, BallFile { balls, weights, .. }) = read_balls(spec)?;
+        let solid = BallSolid::from_balls(&balls, weights.as_deref())
             .map_err(|error| Error::input(error).at(&spec.path))?;
         Ok(Self {
+            file,
             kind: "balls",
-            report: input.report(),
-            warnings: input.warnings(),
-            record: input.record,
             solid,
             sampling: None,
         })
@@ -85,33 +98,28 @@ impl SolidInput {
 
     fn of_mesh(spec: &InputSpec, per_axis: usize) -> Result<Self, Error> {
         let MeshInput {
-            record,
-            report,
-            solid,
-            ..
+            mut file, solid, ..
         } = MeshInput::read(spec)?;
         let (solid, sampling) = BallSolid::from_mesh(&solid, per_axis).map_err(|error| {
             Error::input(error)
                 .at(&spec.path)
                 .help("check that the mesh is closed and one solid, or sample it on a finer --grid")
         })?;
-        let mut warnings = report.warnings();
         if sampling.inward > sampling.grid_epsilon {
-            warnings.push(format!(
+            file.warnings.push(format!(
                 "the balls come within {} of the surface, not within {} as requested; a finer --grid comes closer",
                 Figure(sampling.inward),
                 Figure(sampling.grid_epsilon)
             ));
         }
+        file.description += &format!(
+            "\n  {} balls inside, the surface within {} of them",
+            solid.inner().len(),
+            Figure(solid.epsilon())
+        );
         Ok(Self {
-            record,
+            file,
             kind: "mesh",
-            report: format!(
-                "{report}\n  {} balls inside, the surface within {} of them",
-                solid.inner().len(),
-                Figure(solid.epsilon())
-            ),
-            warnings,
             solid,
             sampling: Some(sampling),
         })
@@ -126,29 +134,31 @@ impl SolidInput {
             .collect();
         let solid = BallSolid::from_balls(&balls, None).map_err(refused)?;
         Ok(Self {
-            record,
+            file: ReadFile {
+                record,
+                description: molecule.report.to_string(),
+                warnings: Vec::new(),
+            },
             kind: "molecule",
-            report: molecule.report.to_string(),
-            warnings: Vec::new(),
             solid,
             sampling: None,
         })
     }
 
     pub fn path(&self) -> &Path {
-        &self.record.path
+        &self.file.record.path
     }
 
     /// What was read, for JSON.
     pub fn object(&self) -> Value {
         json!({
-            "file": self.record.path.display().to_string(),
+            "file": self.path().display().to_string(),
             "kind": self.kind,
             "balls": self.solid.inner().len(),
             "epsilon": self.solid.epsilon(),
             "grid_per_axis": self.sampling.map(|sampling| sampling.per_axis),
             "volume_missed_by_balls": self.sampling.and_then(|sampling| sampling.missed),
-            "warnings": self.warnings,
+            "warnings": self.file.warnings,
         })
     }
 }
@@ -173,10 +183,7 @@ pub fn read_solids(
 /// Prints what was read of each solid, as A and B, and warns.
 pub fn describe_solids(solids: &[SolidInput], console: Console) {
     for (side, input) in ["A", "B"].iter().zip(solids) {
-        console.say(format!("{side}: {}", input.report));
-        for warning in &input.warnings {
-            console.warn(format!("{}: {warning}", input.record.path.display()));
-        }
+        input.file.describe(side, console);
     }
 }
 
@@ -194,8 +201,7 @@ pub fn is_mesh(path: &Path) -> bool {
 }
 
 pub struct MeshInput {
-    /// File and checksum.
-    pub record: InputRecord,
+    pub file: ReadFile,
     pub mesh: Mesh,
     /// What the file held.
     pub report: MeshReport,
@@ -215,7 +221,11 @@ impl MeshInput {
         let (mesh, report) = mesh::read_bytes(&spec.path, &bytes)?;
         let solid = Solid::new(&mesh).map_err(|error| error.at(&spec.path))?;
         Ok(Self {
-            record: InputRecord::new(spec, &bytes),
+            file: ReadFile {
+                record: InputRecord::new(spec, &bytes),
+                description: report.to_string(),
+                warnings: report.warnings(),
+            },
             mesh,
             report,
             solid,
@@ -223,45 +233,31 @@ impl MeshInput {
     }
 }
 
-pub struct BallFileInput {
-    /// File, link and checksum.
-    pub record: InputRecord,
-    pub file: BallFile,
-}
-
-impl BallFileInput {
-    /// Reads the balls of a file; of a file with links, those of the link named in place of a chain.
-    pub fn read(spec: &InputSpec) -> Result<Self, Error> {
-        let bytes = read_bounded(&spec.path, MAX_TABLE).map_err(|error| {
-            Error::input(format!("cannot read the balls: {error}"))
-                .at(&spec.path)
-                .help("check the name, the permissions and the size of the file")
-        })?;
-        let link = spec.chains.as_ref().and_then(|chains| chains.first());
-        Ok(Self {
-            record: InputRecord::new(spec, &bytes),
-            file: ball_file::parse(&spec.path, &bytes, link.map(String::as_str))?,
-        })
-    }
-
-    /// The number of balls and their link, as text.
-    pub fn report(&self) -> String {
-        let balls = counted(self.file.balls.len(), "ball");
-        match &self.file.group {
+/// Reads the balls of a file; of a file with links, those of the link named in place of a chain.
+fn read_balls(spec: &InputSpec) -> Result<(ReadFile, BallFile), Error> {
+    let bytes = read_bounded(&spec.path, MAX_TABLE).map_err(|error| {
+        Error::input(format!("cannot read the balls: {error}"))
+            .at(&spec.path)
+            .help("check the name, the permissions and the size of the file")
+    })?;
+    let link = spec.chains.as_ref().and_then(|chains| chains.first());
+    let file = ball_file::parse(&spec.path, &bytes, link.map(String::as_str))?;
+    let balls = counted(file.balls.len(), "ball");
+    let off = (file.switched_off > 0).then(|| {
+        format!(
+            "left out {} spheres whose radius is not above zero, by which they are switched off",
+            file.switched_off
+        )
+    });
+    let read = ReadFile {
+        record: InputRecord::new(spec, &bytes),
+        description: match &file.group {
             Some(link) => format!("{balls} of {link}"),
             None => balls,
-        }
-    }
-
-    pub fn warnings(&self) -> Vec<String> {
-        let count = self.file.switched_off;
-        let off = (count > 0).then(|| {
-            format!(
-                "left out {count} spheres whose radius is not above zero, by which they are switched off"
-            )
-        });
-        off.into_iter().collect()
-    }
+        },
+        warnings: off.into_iter().collect(),
+    };
+    Ok((read, file))
 }
 
 /// The file of balls that a text names, with the link picked of it; `None` where it names something else.
@@ -279,10 +275,7 @@ pub fn ball_file_of(text: &str) -> Option<InputSpec> {
 
 /// A part of `knotdock dock` that is no molecule.
 pub struct ShapeInput {
-    /// File, link and checksum.
-    pub record: InputRecord,
-    description: String,
-    warnings: Vec<String>,
+    pub file: ReadFile,
     /// For run.json.
     report: Value,
     content: Content,
@@ -303,26 +296,20 @@ impl ShapeInput {
         if is_mesh(&spec.path) {
             let input = MeshInput::read(spec)?;
             return Ok(Self {
-                record: input.record,
-                description: input.report.to_string(),
-                warnings: input.report.warnings(),
+                file: input.file,
                 report: serde_json::to_value(&input.report).map_err(Error::machine)?,
                 content: Content::Mesh(Box::new((input.mesh, input.solid))),
             });
         }
-        let input = BallFileInput::read(spec)?;
-        let (description, warnings) = (input.report(), input.warnings());
-        let BallFile { balls, weights, .. } = input.file;
+        let (mut file, BallFile { balls, weights, .. }) = read_balls(spec)?;
         // `knotdock sample` writes weights of one if none were fitted.
         let weights = weights.filter(|weights| weights.iter().any(|&weight| weight != 1.0));
-        let weighted = match weights {
-            Some(_) => "weighted",
-            None => "without weights",
+        file.description += match weights {
+            Some(_) => ", weighted",
+            None => ", without weights",
         };
         Ok(Self {
-            record: input.record,
-            description: format!("{description}, {weighted}"),
-            warnings,
+            file,
             report: json!({ "balls": balls.len(), "weighted": weights.is_some() }),
             content: Content::Balls {
                 spheres: spheres(&balls),
@@ -350,18 +337,10 @@ impl ShapeInput {
         }
     }
 
-    /// Prints what was read, and warns.
-    pub fn describe(&self, side: &str, console: Console) {
-        console.say(format!("{side}: {}", self.description));
-        for warning in &self.warnings {
-            console.warn(format!("{}: {warning}", self.record.path.display()));
-        }
-    }
-
     /// The part for run.json, with how it was sampled.
     pub fn entry(&self, sampling: Option<&SampledPart>) -> InputEntry {
         InputEntry {
-            record: self.record.clone(),
+            record: self.file.record.clone(),
             atoms: None,
             sampling: sampling.cloned(),
             report: self.report.clone(),

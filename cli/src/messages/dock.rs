@@ -5,7 +5,6 @@ use std::path::Path;
 
 use crate::messages::shown::shell_word;
 use crate::tables::report::{counted, text_table};
-use crate::tradeoff::choice::MIN_ROTATIONS;
 use knotdock::dock::outcome::{DockOutcome, EffectCost};
 use knotdock::dock::plan::DockPlan;
 use knotdock::options::EngineChoice;
@@ -162,18 +161,6 @@ pub fn restraints_warning(plan: &DockPlan, poses: &[RankedPose]) -> Option<Strin
         format!(
             "no pose satisfies {needed} restraints, at most {most}: they may contradict each other; restraints.csv has \
              the distances, and --restraints-need allows for false ones"
-        )
-    })
-}
-
-/// Warning that a deadline left time for too few rotations.
-pub fn few_rotations_warning(outcome: &DockOutcome, has_deadline: bool) -> Option<String> {
-    let few = has_deadline && outcome.searched < MIN_ROTATIONS;
-    few.then(|| {
-        format!(
-            "the budget left time for {} only, and fewer than {MIN_ROTATIONS} find little: allow more time, or leave \
-             more of the machine to the run",
-            counted(outcome.searched, "rotation")
         )
     })
 }
