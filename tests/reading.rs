@@ -193,7 +193,7 @@ fn an_assembly_is_written_and_read_again() {
         ("--write dimer.pdb", "already there"),
         ("--write half.pdb --force", "one of the input files"),
         ("--write dimer.txt", "neither in .pdb nor in .cif"),
-        ("--write all.cif --atoms all.cif", "name the same file"),
+        ("--write all.cif --atoms all.cif", "named twice"),
         ("--force", "required"),
     ] {
         let output = cargo_bin_cmd!("knotdock")

@@ -1,11 +1,21 @@
-//! A run that is docked: its table, and what is written of it.
+//! A run that is docked: its table and its files.
 
 use std::path::Path;
 
+use serde_json::{Value, json};
+
+use crate::docking::Docking;
+use crate::inputs::native::measure;
+use crate::inputs::request::Known;
+use crate::messages::console::Console;
+use crate::messages::dock::{
+    cost_text, error_warning, next_text, outcome_text, restraints_warning, timings_text,
+};
 use crate::report::{MAX_ROWS, RunReport, Viewer};
 use crate::shards::WIDE_COLUMNS;
 use crate::tables::batch_results::RunSummary;
-use crate::tables::report::{BEST, best_clusters, firsts};
+use crate::tables::report::{BEST, best_clusters, counted, firsts};
+use crate::tradeoff::choice::MIN_ROTATIONS;
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::PreparedPair;
 use knotdock::dock::run::dock_until;
@@ -15,30 +25,15 @@ use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::{Stage, Staging};
 use knotdock::output::run_folder::FinishedRun;
 use knotdock::output::tables::fields::Column;
-use knotdock::output::tables::poses::PoseRow;
-use knotdock::output::tables::quality;
-use knotdock::output::tables::restraints;
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
+use knotdock::output::tables::{quality, restraints};
 use knotdock_structures::Error;
-use serde_json::{Value, json};
-
-use crate::docking::Docking;
-use crate::inputs::native::measure;
-use crate::inputs::request::Known;
-use crate::messages::brief::{cost_text, next_text};
-use crate::messages::console::Console;
-use crate::messages::dock::{
-    error_warning, few_rotations_warning, outcome_text, restraints_warning,
-};
-use crate::messages::leftovers::warn_leftovers;
-use crate::messages::timings::timings_text;
 
 impl Docking {
-    /// Docks, and writes the run; its JSON object. What ended commands left there is said on `notices`, for a batch says
-    /// that and nothing else of its pairs.
+    /// Docks and writes the run; its JSON object. Leftovers of ended commands are reported on `notices`.
     pub fn run(self, console: Console, notices: Console) -> Result<Value, Error> {
         let staging = Staging::open(RUN, &self.directory, self.force)?;
-        warn_leftovers(&staging.leftovers, notices);
+        notices.warn_leftovers(&staging.leftovers);
         self.dock(console)?.save(staging, console)
     }
 
@@ -92,7 +87,6 @@ impl Docked {
         }
     }
 
-    /// Its table of poses.
     pub fn table(&self) -> RunTable<'_> {
         let docking = &self.docking;
         let diagnostics = docking.request.options.output.diagnostics;
@@ -105,7 +99,6 @@ impl Docked {
         RunTable::wide(&self.outcome.poses, &self.wide)
     }
 
-    /// What a batch reports of it.
     pub fn summary(&self) -> RunSummary {
         let table = self.table();
         let counts = [self.outcome.poses_kept, self.outcome.clusters];
@@ -116,7 +109,7 @@ impl Docked {
     /// Writes the complexes of the best poses into a folder, which may hold the same ones.
     pub fn export_top(&self, folder: &Path) -> Result<(), Error> {
         let request = &self.docking.request;
-        let rows = self.rows();
+        let rows = pose_rows(&self.outcome.poses);
         let top = rows
             .get(..request.options.output.write_top)
             .unwrap_or(&rows);
@@ -127,41 +120,24 @@ impl Docked {
         addition.place(false)
     }
 
-    /// Rank and pose of each row.
-    fn rows(&self) -> Vec<PoseRow> {
-        pose_rows(&self.outcome.poses)
-    }
-
-    /// Writes the run; its JSON object.
     pub fn save(&self, staging: Staging, console: Console) -> Result<Value, Error> {
-        let written = self.write(staging.stage())?;
+        let object = self.write(staging.stage())?;
         staging.commit()?;
         self.report(console);
-        let directory = &self.docking.directory;
-        let top = directory.join("top");
-        let complexes = written.complexes.iter().map(|name| top.join(name));
-        Ok(json!({
-            "directory": directory.display().to_string(),
-            "poses": directory.join("poses.csv").display().to_string(),
-            "report": written.report.then(|| directory.join(REPORT).display().to_string()),
-            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
-            "best": written.best,
-            "run": written.manifest,
-        }))
+        Ok(object)
     }
 
-    /// Writes the table, the complexes and the record of a run into its staging folder.
-    fn write(&self, staging: &Stage) -> Result<Written, Error> {
+    /// Writes the table, the complexes and the record of a run into its staging folder; its JSON object.
+    fn write(&self, staging: &Stage) -> Result<Value, Error> {
         let (docking, outcome) = (&self.docking, &self.outcome);
         let Docking {
             request,
             known,
             prepared,
+            directory,
             ..
         } = docking;
-        let (output, plan) = (&request.options.output, &prepared.plan);
         let table = self.table();
-        let best = table.objects(firsts(&outcome.poses).into_iter().take(BEST));
         let shown = table.first(MAX_ROWS);
         let contacts = request.bodies.contacts(&shown, &request.options);
         let inputs = request.inputs(prepared.sampling.as_deref())?;
@@ -169,7 +145,7 @@ impl Docked {
             bodies: request.bodies.placed(),
             inputs: &inputs,
             options: &request.options,
-            plan,
+            plan: &prepared.plan,
             outcome,
             further: &self.quality,
             contacts: contacts.as_ref(),
@@ -178,32 +154,37 @@ impl Docked {
             clock: &docking.clock,
         }
         .stage(staging)?;
-        let record = staged.record;
-        if !output.no_report {
+        let has_report = !request.options.output.no_report;
+        if has_report {
             let report = RunReport {
-                record: &record,
+                record: &staged.record,
                 options: &request.options,
                 table: &shown,
-                bodies: request.bodies.shown(contacts.as_ref()),
+                bodies: request.bodies.placed(),
+                contacts: contacts.as_ref(),
                 directory: &docking.shown.display().to_string(),
             };
             let text = report.text(Viewer::embedded());
             staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
         }
-        Ok(Written {
-            manifest: record,
-            report: !output.no_report,
-            complexes: staged.complexes,
-            best,
-        })
+        let path = |name: &str| directory.join(name).display().to_string();
+        let top = directory.join("top");
+        let complexes = staged.complexes.iter().map(|name| top.join(name));
+        Ok(json!({
+            "directory": directory.display().to_string(),
+            "poses": path("poses.csv"),
+            "report": has_report.then(|| path(REPORT)),
+            "complexes": complexes.map(|path| path.display().to_string()).collect::<Vec<_>>(),
+            "best": table.objects(firsts(&outcome.poses).into_iter().take(BEST)),
+            "run": staged.record,
+        }))
     }
 
-    /// Reports the run: the best clusters, what they cost, and what to do next; before them, where the console wants
-    /// details, effects, errors and times.
+    /// Reports best clusters, cost and next steps; with details, effects, errors and times before them.
     fn report(&self, console: Console) {
         let (docking, outcome) = (&self.docking, &self.outcome);
         let plan = &docking.prepared.plan;
-        console.detail(format!("\n{}", outcome_text(plan, outcome)));
+        console.detail(format!("\n{}", outcome_text(outcome)));
         console.detail(format!("\n{}", timings_text(outcome)));
         console.say(format!(
             "\n{}\n",
@@ -229,14 +210,14 @@ impl Docked {
     }
 }
 
-/// What a run wrote.
-struct Written {
-    /// Rows of the best clusters, as JSON.
-    best: Vec<Value>,
-    /// Whether there is a report.
-    report: bool,
-    /// Names of the complexes in `top/`.
-    complexes: Vec<String>,
-    /// run.json.
-    manifest: Value,
+/// Warning that a deadline left time for too few rotations.
+fn few_rotations_warning(outcome: &DockOutcome, has_deadline: bool) -> Option<String> {
+    let few = has_deadline && outcome.searched < MIN_ROTATIONS;
+    few.then(|| {
+        format!(
+            "the budget left time for {} only, and fewer than {MIN_ROTATIONS} find little: allow more time, or leave \
+             more of the machine to the run",
+            counted(outcome.searched, "rotation")
+        )
+    })
 }

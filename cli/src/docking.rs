@@ -13,9 +13,9 @@ use knotdock::output::run_folder::Clock;
 
 use crate::inputs::native::NativeFiles;
 use crate::inputs::request::{Known, Request};
-use crate::messages::brief::{expected_text, score_text};
 use crate::messages::console::Console;
 use crate::messages::dock::{assumed, regions_text};
+use crate::messages::dock::{expected_text, score_text};
 use knotdock_structures::Error;
 
 /// A run that is ready to go.

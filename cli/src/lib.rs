@@ -1,11 +1,9 @@
-//! The command line: one thin file a command. Each reads its options, calls the library and hands what comes of it to
+//! The command line: one thin file per command. Each reads its options, calls the library and hands the results to
 //! [`knotdock::output`] and the console.
 //!
-//! The program is [`main`]. Other programs run commands in their own process by [`call`] and hear what they say by a
-//! [`Listener`].
+//! The program is [`main`]. Other programs run commands in-process by [`call`] and receive messages by a [`Listener`].
 
 mod arguments;
-mod calls;
 mod commands;
 mod docked;
 mod docking;
@@ -17,34 +15,32 @@ pub mod records;
 mod refining;
 mod report;
 mod shards;
-mod shell_word;
-mod signals;
 mod solid_files;
 pub mod system_limits;
 pub mod tables;
-pub mod tradeoff;
+mod tradeoff;
 
 use std::borrow::Cow;
 use std::ffi::{OsStr, OsString};
 use std::sync::LazyLock;
 
-use crate::messages::suggestions::first_paragraph;
-use crate::signals::report_end;
-pub use arguments::memory::default_limit as memory_limit;
-use arguments::program::{ProgramArguments, with_negative_numbers};
-pub use calls::{call, read_molecule};
 use clap::error::ErrorKind;
-use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
+use clap::{Args, CommandFactory, FromArgMatches, Parser, Subcommand};
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 use knotdock::search::scan_engine::name_runtime_folder;
 use knotdock::threads;
 use knotdock_structures::Error;
-use messages::console::Console;
-pub use messages::listener::Listener;
-use messages::shown::shown;
-use messages::suggestions;
+use knotdock_structures::molecule::Molecule;
 
-use crate::system_limits::report_as_json;
+pub use arguments::machine::default_limit as memory_limit;
+use arguments::options::{OfReading, OptionArguments};
+use arguments::{ProgramArguments, with_negative_numbers};
+use inputs::molecules::Input;
+use messages::console::Console;
+pub use messages::console::Listener;
+use messages::shown::shown;
+use messages::suggestions::{self, UTF_8, first_paragraph};
+use system_limits::{report_as_json, report_end};
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses,
 /// and samples meshes.
@@ -180,7 +176,7 @@ fn run(command: Command, console: Console) -> Result<u8, Error> {
     done.map(|()| 0)
 }
 
-/// Whether a JSON object is wanted, as far as can be said of a command line that may be wrong.
+/// Whether a JSON object is requested, by a command line that may be wrong.
 fn wants_json(arguments: &[OsString]) -> bool {
     arguments
         .iter()
@@ -188,7 +184,6 @@ fn wants_json(arguments: &[OsString]) -> bool {
         .any(|argument| argument == "--json")
 }
 
-/// The definition of the command line.
 fn command_line() -> clap::Command {
     by_subject(Cli::command())
         .mut_subcommands(with_negative_numbers)
@@ -224,11 +219,10 @@ fn by_subject(command: clap::Command) -> clap::Command {
     command.help_template(template)
 }
 
-/// The command line as read.
 fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
     for word in arguments.iter().skip(1) {
         in_utf8(word).map_err(|fault| {
-            let text = format!("{fault}\n\n  tip: {}", suggestions::UTF_8);
+            let text = format!("{fault}\n\n  tip: {}", UTF_8);
             command_line().error(ErrorKind::InvalidUtf8, text)
         })?;
     }
@@ -238,10 +232,7 @@ fn parsed(arguments: &[OsString]) -> Result<Cli, clap::Error> {
         .map_err(suggestions::explained)
 }
 
-/// A word as text.
-///
-/// Records, tables and scripts hold names of files as text in UTF-8, so that a word of another encoding would name
-/// another file there.
+/// A word as text: records, tables and scripts hold names of files in UTF-8.
 fn in_utf8(word: &OsStr) -> Result<&str, String> {
     word.to_str()
         .ok_or_else(|| format!("{word:?} is not text in UTF-8"))
@@ -297,6 +288,40 @@ fn unparsed(error: &clap::Error) -> Error {
     let remedy = suggestions::suggested(error)
         .unwrap_or_else(|| "see `knotdock --help` and `knotdock COMMAND --help`".to_owned());
     Error::input(first_paragraph(error)).help(remedy)
+}
+
+/// Runs a command in-process; the exit code: 0, or that of the parts which failed.
+///
+/// `words` are a command and its arguments. Messages and the JSON object go to `listener`.
+///
+/// # Errors
+/// [`Error`] for a command line that is none, help being one, and where the command fails.
+pub fn call(words: Vec<OsString>, listener: &dyn Listener) -> Result<u8, Error> {
+    let name = std::iter::once(OsString::from("knotdock"));
+    let cli = parsed(&name.chain(words).collect::<Vec<_>>()).map_err(|error| unparsed(&error))?;
+    let console = Console {
+        listener: Some(listener),
+        ..Console::from(cli.program)
+    };
+    // Work that names no threads is done on one.
+    threads::on(1, || run(cli.command, console))?
+}
+
+/// Reads a molecule, `FILE` or `FILE:H,L`, with words such as `--waters=keep`.
+///
+/// # Errors
+/// [`Error`] for words that are no options of reading, and where the file cannot be read.
+pub fn read_molecule(file: &OsStr, words: Vec<OsString>) -> Result<Molecule, Error> {
+    let file = in_utf8(file).map_err(|fault| Error::input(fault).help(UTF_8))?;
+    let command = clap::Command::new("knotdock")
+        .no_binary_name(true)
+        .disable_help_flag(true);
+    let options = OptionArguments::<OfReading>::augment_args(command)
+        .try_get_matches_from(words)
+        .and_then(|matches| OptionArguments::<OfReading>::from_arg_matches(&matches))
+        .map_err(|error| unparsed(&error))?;
+    let [input] = Input::read_all([file], &options.given()?.options.input.reading())?;
+    Ok(input.molecule)
 }
 
 #[cfg(test)]

@@ -1,11 +1,17 @@
 //! Poses of a run refined, measured and written, many at once.
 
+use std::io;
 use std::path::Path;
 
-use crate::tables::refined::RefinedRow;
-use crate::tables::report::align;
 use cpu_time::ProcessTime;
-use knotdock::evaluate::{Evaluator, PoseQuality};
+use rayon::prelude::*;
+use serde_json::{Map, Value, json};
+
+use crate::inputs::native::NativeFiles;
+use crate::messages::console::Console;
+use crate::tables::report::text_table;
+use crate::tables::{self, Column, object};
+use knotdock::evaluate::{ChainChoice, Evaluator, PoseQuality};
 use knotdock::output::files::complexes::write_complexes;
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
@@ -14,31 +20,19 @@ use knotdock::refine::{RefineOptions, Refined, Refiner};
 use knotdock_scoring::sharp::PairList;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::{ChainMap, Molecule};
-use rayon::prelude::*;
-
-use crate::inputs::native::{NativeFiles, announce};
-use crate::messages::console::Console;
 
 /// A known complex, matched with the molecules as docked.
-pub struct Known {
+pub struct MatchedNative {
     files: NativeFiles,
     /// Of the molecules as docked.
     pub evaluator: Evaluator,
 }
 
-impl Known {
+impl MatchedNative {
     /// Matches the complex with receptor and ligand; warns if it does not match.
-    pub fn new(
-        files: NativeFiles,
-        [receptor, ligand]: [&Molecule; 2],
-        console: Console,
-    ) -> Option<Self> {
-        match files.evaluator(receptor, ligand) {
-            Ok(evaluator) => {
-                files.warn(console);
-                announce(&evaluator, console);
-                Some(Self { files, evaluator })
-            }
+    pub fn new(files: NativeFiles, pair: [&Molecule; 2], console: Console) -> Option<Self> {
+        match files.matched(pair, console) {
+            Ok(evaluator) => Some(Self { files, evaluator }),
             Err(failure) => {
                 console.warn(format!("no pose is measured: {}", failure.in_one_line()));
                 None
@@ -46,35 +40,32 @@ impl Known {
         }
     }
 
-    /// Qualities of a pose and of what it was refined to.
     fn qualities(&self, row: &PoseRow, refined: &Refined) -> Result<[PoseQuality; 2], Error> {
         let after = match &refined.packed {
             None => self.evaluator.evaluate(&refined.pose),
             // Contacts are of all heavy atoms, so packed molecules are matched anew.
-            Some([receptor, ligand]) => self
-                .files
-                .evaluator(receptor, ligand)?
-                .evaluate(&refined.pose),
+            Some(pair) => {
+                let evaluator = self
+                    .files
+                    .evaluator(pair.each_ref(), &ChainChoice::default())?;
+                evaluator.evaluate(&refined.pose)
+            }
         };
         Ok([self.evaluator.evaluate(&row.pose), after])
     }
 }
 
-/// What poses are refined with.
 pub struct Refining<'a> {
     refiner: Refiner<'a>,
     pair: [&'a Molecule; 2],
-    known: Option<&'a Known>,
+    known: Option<&'a MatchedNative>,
     /// Folder that complexes are written into.
     staged: &'a Path,
 }
 
-/// What was written of some poses.
 pub struct Written {
     /// Rows of the table, without molecules.
     pub table: Vec<RefinedRow>,
-    /// Names of the complexes, in the order of the rows.
-    pub names: Vec<String>,
     /// Chain names in complexes; the same in all.
     pub chains: Option<ChainMap>,
     /// Mean processor time of a pose; `None` where the system does not report it.
@@ -86,7 +77,7 @@ impl<'a> Refining<'a> {
     pub fn new(
         pair: [&'a Molecule; 2],
         options: RefineOptions,
-        known: Option<&'a Known>,
+        known: Option<&'a MatchedNative>,
         staged: &'a Path,
     ) -> Result<Self, Error> {
         Ok(Self {
@@ -113,33 +104,24 @@ impl<'a> Refining<'a> {
         let mut all = Written {
             cpu_seconds_per_pose: cpu.map(|cpu| cpu.as_secs_f64() / rows.len().max(1) as f64),
             table: Vec::new(),
-            names: Vec::new(),
             chains: None,
         };
-        for (row, name, chains) in written {
+        for (row, chains) in written {
             all.table.push(row);
-            all.names.push(name);
             all.chains = Some(chains);
         }
         Ok(all)
     }
 
-    /// Refines and writes a pose; its row, and name and chains of the complex. The packed molecules are dropped: those
-    /// of many poses may not fit into the memory.
-    fn one(
-        &self,
-        row: &PoseRow,
-        list: &mut PairList,
-    ) -> Result<(RefinedRow, String, ChainMap), Error> {
-        let refined = self.refiner.refine(&row.pose, list);
-        let mut refined = refined?;
+    /// Refines and writes a pose; its row and the complex's chains. Packed molecules are dropped to save memory.
+    fn one(&self, row: &PoseRow, list: &mut PairList) -> Result<(RefinedRow, ChainMap), Error> {
+        let mut refined = self.refiner.refine(&row.pose, list)?;
         let quality = self.known.map(|known| known.qualities(row, &refined));
         let quality = quality.transpose()?;
         let packed = refined.packed.take();
-        let molecules = match &packed {
-            Some([receptor, ligand]) => [receptor, ligand],
-            None => self.pair,
-        };
+        let molecules = packed
+            .as_ref()
+            .map_or(self.pair, |packed| packed.each_ref());
         let placed = [PoseRow {
             rank: row.rank,
             pose: refined.pose,
@@ -151,9 +133,9 @@ impl<'a> Refining<'a> {
             rank: row.rank,
             refined,
             quality,
+            file: written.names.pop().unwrap_or_default(),
         };
-        let name = written.names.pop().unwrap_or_default();
-        Ok((row, name, written.chains))
+        Ok((row, written.chains))
     }
 }
 
@@ -161,12 +143,8 @@ impl Written {
     /// The poses as a table for the terminal.
     pub fn listing(&self) -> String {
         let has_native = self.table.iter().any(|row| row.quality.is_some());
-        let mut header = vec!["rank", "moved", "energy", "clashes", "side chains"];
-        if has_native {
-            header.extend(["irmsd", "dockq"]);
-        }
-        let mut lines = vec![header.into_iter().map(str::to_owned).collect()];
-        for row in &self.table {
+        let of_native = if has_native { "|irmsd|dockq" } else { "" };
+        let lines = self.table.iter().map(|row| {
             let Refined { before, after, .. } = &row.refined;
             let packing = row.refined.packing.as_ref();
             let mut line = vec![
@@ -180,8 +158,81 @@ impl Written {
                 line.push(format!("{:.2} -> {:.2}", before.irmsd, after.irmsd));
                 line.push(format!("{:.3} -> {:.3}", before.dockq, after.dockq));
             }
-            lines.push(line);
-        }
-        align(&lines)
+            line
+        });
+        let header = format!("rank|moved|energy|clashes|side chains{of_native}");
+        text_table(&header, lines)
     }
+}
+
+/// A refined pose, with its qualities before and after where there is a known complex.
+pub struct RefinedRow {
+    pub rank: usize,
+    /// What came of it; the molecules are not read.
+    pub refined: Refined,
+    pub quality: Option<[PoseQuality; 2]>,
+    /// Name of the complex's file.
+    pub file: String,
+}
+
+const COLUMNS: [Column<RefinedRow>; 15] = [
+    ("rank", |row| json!(row.rank)),
+    ("qw", |row| quaternion(row, 0)),
+    ("qx", |row| quaternion(row, 1)),
+    ("qy", |row| quaternion(row, 2)),
+    ("qz", |row| quaternion(row, 3)),
+    ("tx", |row| json!(row.refined.pose.translation.x)),
+    ("ty", |row| json!(row.refined.pose.translation.y)),
+    ("tz", |row| json!(row.refined.pose.translation.z)),
+    ("rmsd_moved", |row| json!(row.refined.rmsd_moved)),
+    ("energy_before", |row| json!(row.refined.before.total())),
+    ("energy_after", |row| json!(row.refined.after.total())),
+    ("clashes_before", |row| json!(row.refined.before.clashes)),
+    ("clashes_after", |row| json!(row.refined.after.clashes)),
+    ("side_chains_moved", |row| {
+        json!(row.refined.packing.map(|packing| packing.moved))
+    }),
+    ("exact", |row| {
+        json!(row.refined.packing.map(|packing| packing.exact))
+    }),
+];
+
+/// The columns that a known complex adds.
+const OF_NATIVE: [Column<RefinedRow>; 10] = [
+    ("irmsd_before", |row| of(row, 0, |q| json!(q.irmsd))),
+    ("irmsd_after", |row| of(row, 1, |q| json!(q.irmsd))),
+    ("lrmsd_before", |row| of(row, 0, |q| json!(q.lrmsd))),
+    ("lrmsd_after", |row| of(row, 1, |q| json!(q.lrmsd))),
+    ("fnat_before", |row| of(row, 0, |q| json!(q.fnat))),
+    ("fnat_after", |row| of(row, 1, |q| json!(q.fnat))),
+    ("dockq_before", |row| of(row, 0, |q| json!(q.dockq))),
+    ("dockq_after", |row| of(row, 1, |q| json!(q.dockq))),
+    ("capri_before", |row| of(row, 0, |q| json!(q.capri.name()))),
+    ("capri_after", |row| of(row, 1, |q| json!(q.capri.name()))),
+];
+
+fn quaternion(row: &RefinedRow, part: usize) -> Value {
+    json!(row.refined.pose.quaternion()[part])
+}
+
+/// A value of a row's quality, before (0) or after (1).
+fn of(row: &RefinedRow, time: usize, value: fn(&PoseQuality) -> Value) -> Value {
+    let quality = row.quality.as_ref();
+    quality.map_or(Value::Null, |quality| value(&quality[time]))
+}
+
+fn columns(rows: &[RefinedRow]) -> Vec<Column<RefinedRow>> {
+    let has_native = rows.iter().any(|row| row.quality.is_some());
+    let of_native: &[_] = if has_native { &OF_NATIVE } else { &[] };
+    [&COLUMNS, of_native].concat()
+}
+
+pub fn write_table(stream: &mut dyn io::Write, rows: &[RefinedRow]) -> io::Result<()> {
+    tables::write_table(stream, &columns(rows), rows)
+}
+
+/// The rows as JSON objects with the names of the columns.
+pub fn objects(rows: &[RefinedRow]) -> Vec<Map<String, Value>> {
+    let columns = columns(rows);
+    rows.iter().map(|row| object(&columns, row)).collect()
 }

@@ -1,11 +1,10 @@
-//! The system's limits, and what becomes of a run that meets one: a message, a JSON object where one is wanted, and
-//! exit code 1.
+//! The system's limits. A run that meets one ends with a message, a JSON object if requested, and exit code 1.
 //!
 //! Memory: where the system has none, Rust's standard library ends a program by SIGABRT. A failed allocation can
 //! neither unwind nor allocate, so the message is made on the stack, written past all buffers, and the process ends
 //! without further ado. What a run has staged by then, the next run clears away.
 //!
-//! Size of files (`ulimit -f`): the system ends a program that writes past it by SIGXFSZ. Where that is ignored, the
+//! Size of files (`ulimit -f`): the system ends a program that writes past it by SIGXFSZ. If that is ignored, the
 //! write fails, and is reported like that to a full disk.
 
 use std::alloc::{GlobalAlloc, Layout, System};
@@ -81,8 +80,7 @@ fn some(pointer: *mut u8, bytes: usize) -> *mut u8 {
     pointer
 }
 
-/// Reports that so many bytes could not be had, and ends the process with exit code 1. Allocates nothing and waits for
-/// no lock, for either may be what the failed allocation was in the middle of.
+/// Reports the lack of memory and ends the process with exit code 1, without allocations and locks.
 #[cold]
 #[inline(never)]
 fn out_of_memory(bytes: usize) -> ! {
@@ -150,6 +148,46 @@ fn end() -> ! {
 #[cfg(not(unix))]
 fn end() -> ! {
     std::process::abort()
+}
+
+/// Has the program say that it was ended, by Ctrl-C or by `kill`. A signal that is ignored, as by `nohup`, stays so.
+#[cfg(unix)]
+pub fn report_end() {
+    for signal in [libc::SIGINT, libc::SIGTERM] {
+        // SAFETY: the structures are valid for the calls, and the handler calls async-signal-safe functions alone.
+        unsafe {
+            let mut action: libc::sigaction = std::mem::zeroed();
+            if libc::sigaction(signal, std::ptr::null(), &mut action) != 0
+                || action.sa_sigaction != libc::SIG_DFL
+            {
+                continue;
+            }
+            action.sa_sigaction = say_and_end as extern "C" fn(libc::c_int) as libc::sighandler_t;
+            // The default comes back before the handler runs.
+            action.sa_flags = libc::SA_RESETHAND;
+            libc::sigaction(signal, &action, std::ptr::null_mut());
+        }
+    }
+}
+
+/// Nothing is to be done: other systems end the program by themselves.
+#[cfg(not(unix))]
+pub fn report_end() {}
+
+/// The lines, and the object where one is wanted; then the signal again.
+#[cfg(unix)]
+extern "C" fn say_and_end(signal: libc::c_int) {
+    // The line of a progress bar may stand before it.
+    const LINES: &[u8] = b"\nerror: the command was interrupted: a run that was not finished has no results, pairs of a batch that were finished have theirs\n  help: give the command again; a batch goes on where it was\n";
+    const OBJECT: &[u8] = b"{\"error\":{\"file\":null,\"line\":null,\"message\":\"the command was interrupted\",\"remedy\":\"give the command again; a batch goes on where it was\"}}\n";
+    if wants_json() {
+        write_past_buffers(1, OBJECT);
+    }
+    write_past_buffers(2, LINES);
+    // SAFETY: the disposition is the default again, so that the signal ends the process when the handler returns.
+    unsafe {
+        libc::raise(signal);
+    }
 }
 
 #[cfg(test)]

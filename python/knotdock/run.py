@@ -45,7 +45,7 @@ class Run:
         return f"<Run of {len(self.scores)} poses in {self.directory}>"
 
     def table(self, frame: Frame = "pandas") -> Any:
-        """The table of poses, best first: a row a cluster, or a row a pose with `no_cluster`.
+        """The table of poses, best first: one row per cluster, or one row per pose with `no_cluster`.
 
         Args:
             frame: `"pandas"`, `"polars"` or `"numpy"`, a dict of arrays by column.

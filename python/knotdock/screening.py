@@ -154,7 +154,7 @@ def _shards(place: pathlib.Path, wanted: int | None, pairs: int, cores: int) -> 
     if path.exists():
         before = json.loads(path.read_text())["shards"]
         if wanted not in (None, before):
-            message = f"{place} holds a screen of {before} shards, and {wanted} are asked for"
+            message = f"{place} holds a screen of {before} shards, and {wanted} are requested"
             raise ValueError(message)
         return before
     number = wanted or min(pairs, max(math.ceil(pairs / _PAIRS_A_SHARD), 4 * cores))
@@ -189,7 +189,7 @@ def _shard(
 
 
 def _to_parquet(table: pathlib.Path, part: pathlib.Path, shard: tuple[int, int] | None = None) -> None:
-    """A table of a shard as Parquet, whole or not at all; with `shard` it has a row a pair, and gets their rows' numbers."""
+    """A table of a shard as Parquet, whole or not at all; with `shard` it has one row per pair, and gets their rows' numbers."""
     import pyarrow as pa
     import pyarrow.csv as csv
     import pyarrow.parquet as parquet

@@ -77,13 +77,13 @@ def _array(cells: tuple[str, ...]) -> np.ndarray:
 
 
 def read_results(path: str | os.PathLike[str], frame: Frame = "pandas") -> Any:
-    """`results.csv` of a batch: a row a pair. `path` is the file or the batch's directory."""
+    """`results.csv` of a batch: one row per pair. `path` is the file or the batch's directory."""
     path = os.fspath(path)
     return read_table(os.path.join(path, "results.csv") if os.path.isdir(path) else path, frame)
 
 
 def read_poses(path: str | os.PathLike[str], frame: Frame = "pandas") -> Any:
-    """The poses of a run (`poses.csv`) or of a batch (`poses.csv.gz`): a row a pose.
+    """The poses of a run (`poses.csv`) or of a batch (`poses.csv.gz`): one row per pose.
 
     `path` is the file, or the directory of the run or batch.
     """

@@ -1,25 +1,24 @@
-//! Commands by their words. They run on a thread of their own while Python's waits, so that signals such as Ctrl-C are
-//! seen and other threads of Python run.
+//! Commands by their words. They run on their own thread while Python's waits, so that signals such as Ctrl-C are
+//! received and other threads of Python run.
 
 use std::ffi::OsString;
 use std::fmt;
 use std::path::PathBuf;
-use std::sync::Arc;
-use std::sync::Mutex;
 use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc::{RecvTimeoutError, channel};
+use std::sync::{Arc, Mutex};
 use std::thread::Builder;
 use std::time::Duration;
 
+use pyo3::prelude::*;
+use pyo3::types::PyList;
+
+use crate::failure::{exception, fault};
 use knotdock::output::files::added::add_files;
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 use knotdock::progress::{Ended, Progress};
 use knotdock_cli::Listener;
 use knotdock_structures::Error;
-use pyo3::prelude::*;
-use pyo3::types::PyList;
-
-use crate::failure::{exception, fault};
 
 /// Adds files to a run: its inputs, which are found again beside its record.
 #[pyfunction]
@@ -27,23 +26,22 @@ pub fn add(py: Python<'_>, run: PathBuf, files: Vec<PathBuf>) -> PyResult<()> {
     add_files(&run, &files).map_err(|error| exception(py, &error))
 }
 
-/// Time between two looks at signals and at what the command has said.
+/// Time between two looks at signals and messages.
 const LOOK: Duration = Duration::from_millis(50);
 /// Stack of a command's thread, in bytes: as much as a program's first thread commonly has.
 const STACK: usize = 8 << 20;
 
-/// What a command said, until Python hears it.
+/// A message of a command, until Python receives it.
 enum Event {
-    Said(String),
-    Warned(String),
-    Failed(String),
+    /// The listener's method, and the text.
+    Message(&'static str, String),
     Stage(String, u64),
     /// Steps of the stage before it in the list.
     Advanced(u64),
     Result(String),
 }
 
-/// Collects what a command says.
+/// Collects the messages of a command.
 #[derive(Default)]
 pub struct Events {
     said: Mutex<Vec<Event>>,
@@ -64,30 +62,30 @@ impl Events {
     }
 
     fn taken(&self) -> Vec<Event> {
-        self.said
-            .lock()
-            .map(|mut said| std::mem::take(&mut *said))
-            .unwrap_or_default()
+        let taken = self.said.lock().map(|mut said| std::mem::take(&mut *said));
+        taken.unwrap_or_default()
     }
 }
 
 impl Listener for Events {
     fn say(&self, text: &str) {
-        self.add(Event::Said(text.to_owned()));
+        self.add(Event::Message("say", text.to_owned()));
     }
 
     fn warn(&self, text: &str) {
-        self.add(Event::Warned(text.to_owned()));
+        self.add(Event::Message("warn", text.to_owned()));
     }
 
     fn error(&self, text: &str) {
-        self.add(Event::Failed(text.to_owned()));
+        self.add(Event::Message("error", text.to_owned()));
     }
 
     fn result(&self, object: &serde_json::Value) {
         self.add(Event::Result(object.to_string()));
     }
+}
 
+impl Progress for Events {
     fn stage(&self, name: &str, total: u64) {
         self.add(Event::Stage(name.to_owned(), total));
     }
@@ -109,20 +107,6 @@ impl Listener for Events {
     }
 }
 
-impl Progress for Events {
-    fn stage(&self, name: &str, total: u64) {
-        Listener::stage(self, name, total);
-    }
-
-    fn advance(&self, by: u64) {
-        Listener::advance(self, by);
-    }
-
-    fn go_on(&self) -> Result<(), Ended> {
-        Listener::go_on(self)
-    }
-}
-
 /// Runs a command by its words, such as `["dock", "a.pdb", "b.pdb"]`; its JSON object as text, or None, and its exit
 /// code. `listener` has methods `say(text)`, `warn(text)`, `error(text)`, `stage(name, total)` and `advance(steps)`.
 ///
@@ -139,7 +123,7 @@ pub fn call(
     Ok((result, code))
 }
 
-/// Does work on a thread of its own while Python's hands on what it reports; what it gives, and its JSON object.
+/// Does work on its own thread while Python's passes its messages on; its result, and its JSON object.
 pub fn work_beside<T: Send + 'static>(
     py: Python<'_>,
     listener: &Bound<'_, PyAny>,
@@ -187,13 +171,11 @@ pub fn work_beside<T: Send + 'static>(
     }
 }
 
-/// Hands on what was said.
+/// Passes messages on.
 fn tell(listener: &Bound<'_, PyAny>, events: &Events, result: &mut Option<String>) -> PyResult<()> {
     for event in events.taken() {
         match event {
-            Event::Said(text) => drop(listener.call_method1("say", (text,))?),
-            Event::Warned(text) => drop(listener.call_method1("warn", (text,))?),
-            Event::Failed(text) => drop(listener.call_method1("error", (text,))?),
+            Event::Message(method, text) => drop(listener.call_method1(method, (text,))?),
             Event::Stage(name, total) => drop(listener.call_method1("stage", (name, total))?),
             Event::Advanced(steps) => drop(listener.call_method1("advance", (steps,))?),
             Event::Result(object) => *result = Some(object),

@@ -1,9 +1,14 @@
-//! The correlation of two sets of balls, for scores of one's own.
+//! The correlation of two sets of balls, for custom scores.
 //!
 //! Threads share a correlator: each waits for its buffers, without holding the interpreter.
 
 use std::sync::{Arc, Mutex, MutexGuard, PoisonError};
 
+use nalgebra::{Quaternion, UnitQuaternion, Vector3};
+use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use pyo3::prelude::*;
+
+use crate::failure::bad_input;
 use knotdock_cli::memory_limit;
 use knotdock_scoring::engine::{EngineMemory, EngineOptions, Plan};
 use knotdock_scoring::exact::ExactScorer;
@@ -11,11 +16,6 @@ use knotdock_scoring::kernel::KernelOptions;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::{Correlation, Correlator as Inner, CorrelatorError, GridPose, Precision};
 use knotdock_structures::knots::Knots;
-use nalgebra::{Quaternion, UnitQuaternion, Vector3};
-use numpy::{IntoPyArray, PyArray1, PyArray3, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
-use pyo3::prelude::*;
-
-use crate::failure::bad_input;
 
 /// Correlates two sets of balls over all translations, one rotation after another.
 ///
@@ -175,7 +175,7 @@ impl Correlator {
         self.inner().plan().spacing()
     }
 
-    /// Components of the lifted axis, each of which costs a transform a rotation.
+    /// Components of the lifted axis, each of which costs one transform per rotation.
     #[getter]
     fn rank(&self) -> usize {
         self.inner().rank()
@@ -188,7 +188,7 @@ impl Correlator {
     }
 
     /// Error against the exact sum at the best voxels of a few rotations and a sweep through their grids, relative to
-    /// the best score there: at most the tolerance, for one that it exceeds is refused.
+    /// the best score there. It is at most the tolerance: others are refused.
     #[getter]
     fn error(&self) -> f64 {
         self.inner().error()
@@ -257,7 +257,7 @@ fn unit([w, x, y, z]: [f64; 4]) -> UnitQuaternion<f64> {
     UnitQuaternion::new_unchecked(Quaternion::from_parts(w, Vector3::new(x, y, z)))
 }
 
-/// The rows of an array of so many columns.
+/// The rows of an array of N columns.
 fn rows<const N: usize>(
     py: Python<'_>,
     array: &PyReadonlyArray2<'_, f64>,

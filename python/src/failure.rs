@@ -1,7 +1,8 @@
 //! Failures as exceptions with file, line, message and remedy: classes of `knotdock.errors`.
 
-use knotdock_structures::Error;
 use pyo3::prelude::*;
+
+use knotdock_structures::Error;
 
 /// The exception of a failure: `InputError` for bad input, `KnotdockError` for anything else.
 pub fn exception(py: Python<'_>, failure: &Error) -> PyErr {

@@ -2,12 +2,12 @@
 
 use std::ffi::OsString;
 
-use knotdock_structures::molecule::{Atom, Molecule as Inner};
 use numpy::{IntoPyArray, PyArray1, PyArray2, PyArrayMethods};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::failure::exception;
+use knotdock_structures::molecule::{Atom, Molecule as Inner};
 
 /// A molecule as knotdock reads it: the atoms that are docked.
 #[pyclass(frozen, module = "knotdock._knotdock")]

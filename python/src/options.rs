@@ -1,13 +1,14 @@
 //! The options of `knotdock dock`, read off their one definition.
 
-use knotdock::options::definition::{Definition, Form};
-use knotdock::options::definitions;
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
-/// The options of `knotdock dock`, in their order: `name`, `kind` (`flag`, `list`, `file`, `number`, `choice` or
-/// `text`), `values` of a choice, `default` as text or None, `subject`, `help`, and whether it
-/// is one `of_files`, which no word of a command line gives.
+use knotdock::options::definition::{Definition, Form};
+use knotdock::options::definitions;
+
+/// The options of `knotdock dock`, in their order: `name`, `kind`, `values` of a choice, `default` as text or None,
+/// `subject`, `help`, and whether it is one `of_files`, which no word of a command line gives. A kind is `flag`, `list`,
+/// `file`, `number`, `choice` or `text`.
 #[pyfunction]
 pub fn options(py: Python<'_>) -> PyResult<Vec<Bound<'_, PyDict>>> {
     definitions()

@@ -2,13 +2,13 @@
 
 use std::path::PathBuf;
 
-use knotdock::options::option_named;
-use knotdock::{DockOptions, Docking, Run as Inner};
 use pyo3::prelude::*;
 
 use crate::command::work_beside;
 use crate::failure::{bad_input, exception};
 use crate::molecule::Molecule;
+use knotdock::options::option_named;
+use knotdock::{DockOptions, Docking, Run as Inner};
 
 /// A docking of two molecules in memory.
 #[pyclass(frozen, module = "knotdock._knotdock")]

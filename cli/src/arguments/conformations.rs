@@ -12,7 +12,7 @@ use crate::arguments::ranks::Ranks;
 pub struct ConformationArguments {
     /// Models of the receptor's file to dock and to rank together: all, or numbers such as 1,3,5-10.
     ///
-    /// Each is docked in a run of its own. 1 is the first model in the file.
+    /// Each is docked in its own run. 1 is the first model in the file.
     #[arg(long, value_name = "all|LIST", conflicts_with_all = NOT_WITH)]
     pub receptor_models: Option<ModelList>,
     /// Models of the ligand's file, in the same way.
@@ -28,12 +28,10 @@ pub struct ConformationArguments {
     pub ligand_also: Vec<String>,
 }
 
-/// What does not go with several conformations: copies of one molecule, an end in time of one run, a model of both
-/// sides.
+/// Options that several conformations exclude.
 const NOT_WITH: [&str; 3] = ["symmetry", "budget", "model"];
 
 impl ConformationArguments {
-    /// Whether any is given.
     pub fn are_given(&self) -> bool {
         self.receptor_models.is_some()
             || self.ligand_models.is_some()
@@ -42,12 +40,9 @@ impl ConformationArguments {
     }
 }
 
-/// Models of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum ModelList {
-    /// All that the file has.
     All,
-    /// These, counted from 1.
     These(Vec<usize>),
 }
 

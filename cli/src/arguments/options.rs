@@ -4,62 +4,57 @@ use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 
 use clap::builder::{PossibleValuesParser, ValueParser};
-use clap::error::ErrorKind;
 use clap::parser::ValueSource;
 use clap::{Arg, ArgAction, ArgMatches, Args, Command, FromArgMatches, ValueHint, value_parser};
+
 use knotdock::options::definition::{Definition, Form};
 use knotdock::options::file::GivenOption;
 use knotdock::options::{DockOptions, Preset, definitions};
 use knotdock_structures::Error;
 
-/// Which of the options of `knotdock dock` a command has.
 pub trait Selection {
-    /// Whether the command has this one.
+    /// Whether presets and files of options give some, too.
+    const HAS_FILES: bool;
+
     fn has(option: &Definition) -> bool;
 }
 
-/// All options: of `knotdock dock`.
-#[derive(Clone, Debug)]
-pub struct OfDock;
+/// Selections: a name, whether files give options, and whether the command has an option.
+macro_rules! selections {
+    ($($(#[$doc:meta])* $name:ident, $has_files:literal, $has:expr;)*) => {$(
+        $(#[$doc])*
+        #[derive(Clone, Debug)]
+        pub struct $name;
 
-impl Selection for OfDock {
-    fn has(_: &Definition) -> bool {
-        true
-    }
+        impl Selection for $name {
+            const HAS_FILES: bool = $has_files;
+
+            fn has(option: &Definition) -> bool {
+                let has: fn(&Definition) -> bool = $has;
+                has(option)
+            }
+        }
+    )*};
 }
 
-/// The options that decide how a pose scores and how meshes are sampled, and the threads: of `knotdock score`.
-#[derive(Clone, Debug)]
-pub struct OfScore;
-
-impl Selection for OfScore {
-    fn has(option: &Definition) -> bool {
+selections! {
+    /// All options: of `knotdock dock`.
+    OfDock, true, |_| true;
+    /// The options that decide how a pose scores and how meshes are sampled, and the threads: of `knotdock score`.
+    OfScore, true, |option| {
         ["input", "sampling", "kernel", "terms", "restraints"].contains(&option.subject())
             || option.name() == "threads"
-    }
+    };
+    /// The options of a sweep, which docks no rings and writes no run: of `knotdock tradeoff`.
+    OfTradeoff, true, |option| option.subject() != "output" && option.name() != "symmetry";
+    /// The options on reading a structure and on assumptions about it: of `knotdock inspect`.
+    OfInspect, true, |option| option.subject() == "input" || option.name() == "ph";
+    /// The options on reading molecules.
+    OfReading, false, |option| option.subject() == "input";
+    /// The options of the machine: of commands that take much memory.
+    OfMachine, false, |option| option.subject() == "machine";
 }
 
-/// The options of a sweep, which docks no rings and writes no run: of `knotdock tradeoff`.
-#[derive(Clone, Debug)]
-pub struct OfTradeoff;
-
-impl Selection for OfTradeoff {
-    fn has(option: &Definition) -> bool {
-        option.subject() != "output" && option.name() != "symmetry"
-    }
-}
-
-/// The options on what is read of a structure, and what is assumed of it: of `knotdock inspect`.
-#[derive(Clone, Debug)]
-pub struct OfInspect;
-
-impl Selection for OfInspect {
-    fn has(option: &Definition) -> bool {
-        option.subject() == "input" || option.name() == "ph"
-    }
-}
-
-/// The options of a command as they are typed.
 #[derive(Clone, Debug)]
 pub struct OptionArguments<S> {
     typed: Vec<(&'static Definition, String)>,
@@ -68,13 +63,11 @@ pub struct OptionArguments<S> {
     selection: PhantomData<S>,
 }
 
-/// Name of the option that names a preset.
 const PRESET: &str = "preset";
 
 /// Name of the option that names a file of options.
 pub const CONFIG: &str = "config";
 
-/// The parser of a preset's name.
 pub fn preset_parser() -> PossibleValuesParser {
     let values = Preset::ALL
         .into_iter()
@@ -82,13 +75,11 @@ pub fn preset_parser() -> PossibleValuesParser {
     PossibleValuesParser::new(values)
 }
 
-/// The options that words of the command line give.
 fn typed(has: fn(&Definition) -> bool) -> impl Iterator<Item = &'static Definition> {
     let all = definitions().iter();
     all.filter(move |option| !option.is_of_files() && has(option))
 }
 
-/// The argument of an option.
 fn argument(option: &'static Definition) -> Arg {
     let argument = Arg::new(option.name())
         .long(option.long())
@@ -135,7 +126,6 @@ fn text_parser(option: &'static Definition) -> ValueParser {
     ValueParser::new(parse)
 }
 
-/// The typed value of an option, if it was typed.
 fn typed_value(option: &'static Definition, matches: &ArgMatches) -> Option<String> {
     let name = option.name();
     if matches.value_source(name) != Some(ValueSource::CommandLine) {
@@ -169,7 +159,10 @@ impl<S: Selection> Args for OptionArguments<S> {
                  files. Weights and potentials of the score are given by files alone (`knotdock preset default --all` \
                  lists them).",
             );
-        let command = command.arg(preset).arg(config);
+        let command = match S::HAS_FILES {
+            true => command.arg(preset).arg(config),
+            false => command,
+        };
         command.args(typed(S::has).map(argument))
     }
 
@@ -181,12 +174,13 @@ impl<S: Selection> Args for OptionArguments<S> {
 impl<S: Selection> FromArgMatches for OptionArguments<S> {
     fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
         let value = |option| Some((option, typed_value(option, matches)?));
-        let preset = matches.get_one::<String>(PRESET);
-        let configs = matches.get_many(CONFIG).into_iter().flatten();
+        let files = S::HAS_FILES.then_some(matches);
+        let preset = files.and_then(|matches| matches.get_one::<String>(PRESET));
+        let configs = files.and_then(|matches| matches.get_many(CONFIG));
         Ok(Self {
             typed: typed(S::has).filter_map(value).collect(),
             preset: preset.and_then(|name| Preset::named(name)),
-            configs: configs.cloned().collect(),
+            configs: configs.into_iter().flatten().cloned().collect(),
             selection: PhantomData,
         })
     }
@@ -197,66 +191,6 @@ impl<S: Selection> FromArgMatches for OptionArguments<S> {
     }
 }
 
-/// The options on reading molecules: of commands that read some.
-#[derive(Clone, Debug)]
-pub struct OfReading;
-
-impl Selection for OfReading {
-    fn has(option: &Definition) -> bool {
-        option.subject() == "input"
-    }
-}
-
-/// The options of the machine: of commands that take much memory.
-#[derive(Clone, Debug)]
-pub struct OfMachine;
-
-impl Selection for OfMachine {
-    fn has(option: &Definition) -> bool {
-        option.subject() == "machine"
-    }
-}
-
-/// Options of a selection without files of options, as they are typed; the others have their defaults.
-#[derive(Clone, Debug)]
-pub struct TypedOptions<S> {
-    /// The options.
-    pub options: DockOptions,
-    selection: PhantomData<S>,
-}
-
-impl<S: Selection> Args for TypedOptions<S> {
-    fn augment_args(command: Command) -> Command {
-        command.args(typed(S::has).map(argument))
-    }
-
-    fn augment_args_for_update(command: Command) -> Command {
-        Self::augment_args(command)
-    }
-}
-
-impl<S: Selection> FromArgMatches for TypedOptions<S> {
-    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
-        let mut options = DockOptions::default();
-        for option in typed(S::has) {
-            if let Some(text) = typed_value(option, matches) {
-                let set = option.set(&mut options, &text);
-                set.map_err(|error| clap::Error::raw(ErrorKind::ValueValidation, error))?;
-            }
-        }
-        Ok(Self {
-            options,
-            selection: PhantomData,
-        })
-    }
-
-    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
-        *self = Self::from_arg_matches(matches)?;
-        Ok(())
-    }
-}
-
-/// Options, and which of them were given.
 #[derive(Clone)]
 pub struct GivenOptions {
     /// The options, by default where they were not given.
@@ -265,12 +199,10 @@ pub struct GivenOptions {
 }
 
 impl GivenOptions {
-    /// Whether an option was typed, or given by a file.
     pub fn has(&self, name: &str) -> bool {
         self.given.iter().any(|given| given.name == name)
     }
 
-    /// Whether rotations were given by their angle.
     pub fn by_angle(&self) -> bool {
         let rotations = self.given.iter().rfind(|given| given.name == "rotations");
         rotations.is_some_and(|given| given.text.ends_with("deg"))
@@ -294,9 +226,6 @@ impl GivenOptions {
 
 impl<S: Selection> OptionArguments<S> {
     /// The options: as typed, else as the last file gives them, else as the preset does, else by default.
-    ///
-    /// # Errors
-    /// [`Error`] for a file of options that cannot be read, and a file that an option names.
     pub fn given(&self) -> Result<GivenOptions, Error> {
         let mut options = DockOptions::default();
         let mut given = match self.preset {

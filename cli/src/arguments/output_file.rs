@@ -1,23 +1,35 @@
 //! Checks of an output file: never over one that is read, and over another only on request.
 
-use knotdock::output::files::file_error;
 use std::path::{Path, PathBuf};
 
-use knotdock::output::files::whole_file::{is_link, is_stream, leftovers};
-
 use crate::messages::console::Console;
-use crate::messages::leftovers::warn_leftovers;
+use knotdock::output::files::file_error;
+use knotdock::output::files::whole_file::{is_link, is_stream, leftovers};
 use knotdock_structures::Error;
 
-/// Checks, before any work, that `file` can be made, is no link and none of those that are `read`, and is not there
-/// unless `force` is true; warns of what ended commands left beside it.
-pub fn check_output<'a>(
-    file: &Path,
-    read: impl IntoIterator<Item = &'a Path>,
+/// Checks, before any work, that each file can be made, is no link and none of those `read` or of the others. It may
+/// exist only if `force` is true. Warns of leftovers of ended commands.
+pub fn check_outputs<'a>(
+    files: impl IntoIterator<Item = &'a PathBuf>,
+    read: &[&Path],
     force: bool,
     console: Console,
 ) -> Result<(), Error> {
-    check_not_read(file, read)?;
+    let mut checked: Vec<&Path> = Vec::new();
+    for file in files {
+        if checked.iter().any(|other| is_same(other, file)) {
+            return Err(Error::input("the same file is named twice")
+                .at(file)
+                .help("give each output file its own name"));
+        }
+        check_output(file, read, force, console)?;
+        checked.push(file);
+    }
+    Ok(())
+}
+
+fn check_output(file: &Path, read: &[&Path], force: bool, console: Console) -> Result<(), Error> {
+    check_not_read(file, read.iter().copied())?;
     if is_link(file) {
         return Err(file_error::link(file));
     }
@@ -27,10 +39,7 @@ pub fn check_output<'a>(
             .at(file)
             .help("choose another name, or pass --force to replace it"));
     }
-    let folder = file
-        .parent()
-        .filter(|folder| !folder.as_os_str().is_empty());
-    if file.is_dir() || !folder.unwrap_or(Path::new(".")).is_dir() {
+    if file.is_dir() || !folder_of(file).is_dir() {
         return Err(Error::input(
             "cannot write this file: its folder does not exist, or the name is that of a folder",
         )
@@ -38,30 +47,11 @@ pub fn check_output<'a>(
         .help("name a file in a folder that exists"));
     }
     if !is_stream(file) {
-        warn_leftovers(&leftovers(file), console);
+        console.warn_leftovers(&leftovers(file));
     }
     Ok(())
 }
 
-/// Checks the files of a command with [`check_output`], and that no two of them are one.
-pub fn check_outputs(
-    files: &[&PathBuf],
-    read: &[&Path],
-    force: bool,
-    console: Console,
-) -> Result<(), Error> {
-    for (index, file) in files.iter().enumerate() {
-        if files[..index].iter().any(|other| is_same(other, file)) {
-            return Err(Error::input("the same file is named twice")
-                .at(file)
-                .help("give each output file its own name"));
-        }
-        check_output(file, read.iter().copied(), force, console)?;
-    }
-    Ok(())
-}
-
-/// Checks that `file` is none of those that are `read`.
 pub fn check_not_read<'a>(
     file: &Path,
     read: impl IntoIterator<Item = &'a Path>,
@@ -82,14 +72,17 @@ pub fn is_same(one: &Path, other: &Path) -> bool {
 /// A file's path without links and detours; of one that is not there yet its folder's, with its name.
 fn plain(file: &Path) -> PathBuf {
     let in_folder = || {
-        let folder = file
-            .parent()
-            .filter(|folder| !folder.as_os_str().is_empty());
-        let folder = folder.unwrap_or(Path::new(".")).canonicalize().ok()?;
+        let folder = folder_of(file).canonicalize().ok()?;
         Some(folder.join(file.file_name()?))
     };
     let there = file.canonicalize().ok();
     there.or_else(in_folder).unwrap_or_else(|| file.to_owned())
+}
+
+fn folder_of(file: &Path) -> &Path {
+    let folder = file.parent();
+    let folder = folder.filter(|folder| !folder.as_os_str().is_empty());
+    folder.unwrap_or(Path::new("."))
 }
 
 #[cfg(test)]

@@ -1,13 +1,35 @@
 //! Lists of ranks such as `37,40-45`.
 
+use std::collections::HashMap;
+use std::path::Path;
 use std::str::FromStr;
+
+use knotdock::output::tables::poses::PoseTable;
+use knotdock_structures::Error;
 
 /// Ranks as the user lists them, in that order, each once.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Ranks(pub Vec<usize>);
 
+impl Ranks {
+    /// Places of their rows in the table read from a path, in their order.
+    pub fn places(&self, table: &PoseTable, table_path: &Path) -> Result<Vec<usize>, Error> {
+        let rows = table.rows().iter().enumerate();
+        let of_rank: HashMap<usize, usize> = rows.map(|(place, row)| (row.rank, place)).collect();
+        let places = self.0.iter().map(|rank| {
+            of_rank.get(rank).copied().ok_or_else(|| {
+                let count = table.rows().len();
+                Error::input(format!("there is no rank {rank} among the {count} rows"))
+                    .at(table_path)
+                    .help("choose ranks that the table lists; `knotdock dock --no-cluster` lists every pose")
+            })
+        });
+        places.collect()
+    }
+}
+
 /// More complexes than this are no list that somebody meant.
-const MOST: usize = 100_000;
+const MAX_RANKS: usize = 100_000;
 
 impl FromStr for Ranks {
     type Err = String;
@@ -22,8 +44,10 @@ impl FromStr for Ranks {
             if first > last {
                 return Err(format!("the range {part} runs backwards"));
             }
-            if last - first >= MOST {
-                return Err(format!("the range {part} holds more than {MOST} ranks"));
+            if last - first >= MAX_RANKS {
+                return Err(format!(
+                    "the range {part} holds more than {MAX_RANKS} ranks"
+                ));
             }
             ranks.extend(first..=last);
         }

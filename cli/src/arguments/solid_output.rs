@@ -2,14 +2,18 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::report::{SolidsReport, Viewer};
+use clap::{Args, ValueEnum};
+use csv::StringRecord;
+use serde_json::{Value, json};
+
+use crate::arguments::output_file::check_outputs;
+use crate::messages::console::Console;
+use crate::report::{SolidsReport, Viewer, ViewerArguments};
 use crate::solid_files::balls::write_table;
 use crate::solid_files::sample_picture::write_ball_picture;
 use crate::solid_files::surfaces::SURFACE_FORMATS;
 use crate::solid_files::volume_grids::{VOLUME_FORMATS, VolumeGrid};
-use crate::solid_files::{check_picture, format_of, place_all};
-use clap::{Args, ValueEnum};
-use csv::StringRecord;
+use crate::solid_files::{check_picture, format_of, place_all, write_text};
 use knotdock::geometry::Bracket;
 use knotdock::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid, Surface, surface};
 use knotdock::geometry::bracket::{shifted, volume};
@@ -19,13 +23,7 @@ use knotdock::output::tables::fields::number;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::mesh::Figure;
 use knotdock_structures::sampling::ball_tree::BallTree;
-use knotdock_structures::{Ball, Knots};
-use serde_json::{Value, json};
-
-use crate::arguments::output_file::check_outputs;
-use crate::arguments::viewer::ViewerArguments;
-use crate::messages::console::Console;
-use knotdock_structures::Error;
+use knotdock_structures::{Ball, Error, Knots};
 
 /// Files of a computed solid.
 #[derive(Args, Clone, Debug)]
@@ -48,7 +46,7 @@ pub struct SolidOutput {
     pub report: Option<PathBuf>,
     #[command(flatten)]
     pub viewer: ViewerArguments,
-    /// Which balls are written: outer balls hold the solid, inner balls lie in it.
+    /// Which balls are written: outer balls hold the solid, inner balls are in it.
     #[arg(long, value_enum, default_value_t = Side::Outer)]
     pub set: Side,
     /// Cells of a grid along the longest edge of the box around the solid.
@@ -68,7 +66,6 @@ pub enum Side {
     Outer,
 }
 
-/// Most cells along an edge.
 const MAX_CELLS: usize = 512;
 
 impl SolidOutput {
@@ -87,8 +84,7 @@ impl SolidOutput {
             &self.picture,
             &self.report,
         ];
-        let files: Vec<&PathBuf> = files.into_iter().flatten().collect();
-        check_outputs(&files, read, self.force, console)?;
+        check_outputs(files.into_iter().flatten(), read, self.force, console)?;
         if let Some(path) = &self.surface {
             format_of("surface", path, &SURFACE_FORMATS)?;
         }
@@ -115,7 +111,6 @@ impl SolidOutput {
         }
     }
 
-    /// The balls that are written.
     pub fn chosen<'a>(&self, solid: &'a Bracket) -> &'a [Ball] {
         match self.set {
             Side::Inner => &solid.inner,
@@ -166,8 +161,7 @@ impl SolidOutput {
         }
         if let Some(path) = &self.report {
             let text = result.page(viewer.as_ref())?;
-            let written = StagedFile::write(path, |file| file.write_all(text.as_bytes()))?;
-            staged.push((written, path));
+            staged.push((write_text(path, &text)?, path));
         }
         place_all(staged)
     }
@@ -187,7 +181,6 @@ pub fn shown_surface(balls: &[Ball], origin: [f64; 3]) -> Result<Surface, Error>
     }
 }
 
-/// The depth of balls on a grid.
 fn field(balls: &[Ball], cells: usize) -> Result<BallField, Error> {
     let grid = FieldGrid::about(balls, cells).ok_or_else(|| {
         Error::machine("the balls have no extent, so no grid can be laid over them")
@@ -205,18 +198,13 @@ pub fn knots(balls: &[Ball], origin: [f64; 3]) -> Result<Knots, Error> {
 /// A solid that was computed, with the volumes of its inner and its outer balls. A volume comes with a bound of its
 /// error.
 pub struct SolidResult {
-    /// Name of the operation.
     pub name: &'static str,
-    /// The solid.
     pub solid: Bracket,
-    /// Volume of the inner balls.
     pub inner_volume: (f64, f64),
-    /// Volume of the outer balls.
     pub outer_volume: (f64, f64),
 }
 
 impl SolidResult {
-    /// Measures the volumes.
     pub fn new(name: &'static str, solid: Bracket) -> Self {
         let inner_volume = volume(&solid.inner);
         let outer_volume = match solid.is_exact() {
@@ -231,7 +219,6 @@ impl SolidResult {
         }
     }
 
-    /// Prints the volumes.
     pub fn describe(&self, console: Console) {
         let set = |balls: &[Ball], (value, _): (f64, f64)| {
             format!("{} balls, volume {}", balls.len(), Figure(value))
@@ -244,7 +231,7 @@ impl SolidResult {
         ));
         console.say(if solid.epsilon.is_finite() {
             format!(
-                "  The true result lies between, within {} of either (Hausdorff)",
+                "  The true result is between, within {} of either (Hausdorff)",
                 Figure(solid.epsilon)
             )
         } else {
@@ -253,7 +240,6 @@ impl SolidResult {
         });
     }
 
-    /// The result for JSON.
     pub fn object(&self) -> Value {
         let set = |balls: &[Ball], (value, error): (f64, f64)| json!({ "balls": balls.len(), "volume": value, "volume_error": error });
         let epsilon = self.solid.epsilon;
@@ -264,7 +250,6 @@ impl SolidResult {
         })
     }
 
-    /// The report.
     fn page(&self, viewer: Option<&Viewer>) -> Result<String, Error> {
         let solid = &self.solid;
         let outer = shown_surface(&solid.outer, solid.origin)?;
@@ -277,7 +262,7 @@ impl SolidResult {
         let report = SolidsReport {
             title: self.name.to_owned(),
             sentences: vec![
-                "The result lies between its inner balls, which are in it, and its outer balls, which hold it.".to_owned(),
+                "The result is between its inner balls, which are in it, and its outer balls, which hold it.".to_owned(),
                 match solid.epsilon.is_finite() {
                     true => format!("Either set is within {} of it.", Figure(solid.epsilon)),
                     false => "How far either set is from it is not known.".to_owned(),

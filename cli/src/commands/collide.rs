@@ -1,31 +1,30 @@
-//! `knotdock collide`: whether two solids meet at a pose, how far apart or how deep they are, and what pushes them out.
+//! `knotdock collide`: contact of two solids at a pose, their distance or depth, and the force that separates them.
 
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-use crate::arguments::machine::Threads;
-use crate::report::{SolidsReport, Viewer};
-use crate::tables::collisions;
-use crate::tables::report::counted;
 use clap::{Args, ValueEnum};
-use knotdock::Collision;
-use knotdock::geometry::collide::{CollisionReport, DEFAULT_MAX_MODES, Impact, Method, Verdict};
-use knotdock::options::values::{DISTANCE, Range, duration, in_range};
-use knotdock::output::files::whole_file::StagedFile;
-use knotdock::threads;
-use knotdock_scoring::se3::Pose;
-use knotdock_structures::mesh::Figure;
-use serde_json::{Value, json};
+use csv::StringRecord;
+use serde_json::{Map, Value, json};
 
-use crate::arguments::memory;
+use crate::arguments::machine::{Threads, default_limit};
 use crate::arguments::output_file::check_outputs;
 use crate::arguments::solid_output::shown_surface;
-use crate::arguments::viewer::ViewerArguments;
 use crate::inputs::poses::{PoseArguments, pose_file};
 use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
 use crate::messages::console::Console;
-use crate::solid_files::place_all;
+use crate::report::{SolidsReport, Viewer, ViewerArguments};
+use crate::solid_files::{place_all, write_text};
+use crate::tables::field;
+use crate::tables::report::counted;
+use knotdock::geometry::collide::{CollisionReport, DEFAULT_MAX_MODES, Impact, Method, Verdict};
+use knotdock::options::values::{DISTANCE, Range, duration, in_range};
+use knotdock::output::files::whole_file::StagedFile;
+use knotdock::table_text::cells::TableWriter;
+use knotdock::{Collision, threads};
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
+use knotdock_structures::mesh::Figure;
 
 /// Collide two solids: hit or free at each pose, with bounds of the distance, the shared volume, force and torque.
 ///
@@ -60,7 +59,7 @@ pub struct Collide {
     /// What to compute beside the verdict; with commas between.
     #[arg(long, value_enum, value_delimiter = ',', default_values_t = [Compute::Distance, Compute::Volume, Compute::Force])]
     compute: Vec<Compute>,
-    /// The table to write, a row a pose.
+    /// The table to write, one row per pose.
     #[arg(short, long, value_name = "FILE.csv")]
     output: Option<PathBuf>,
     /// The report to write: the poses as a table and in three dimensions, in a page that opens in any browser.
@@ -115,12 +114,10 @@ enum Compute {
 }
 
 impl Collide {
-    /// Runs the command.
     pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.collide(console))?
     }
 
-    /// Runs on the threads of the caller.
     fn collide(&self, console: Console) -> Result<(), Error> {
         let poses = match &self.path {
             Some(path) => pose_file(path)?,
@@ -128,12 +125,12 @@ impl Collide {
         };
         let viewer = self.viewer.read()?;
         let names = [self.first.as_str(), &self.second];
-        let solids = read_solids(&names, &self.solids, memory::default_limit())?;
+        let solids = read_solids(&names, &self.solids, default_limit())?;
         let mut read: Vec<&Path> = solids.iter().map(SolidInput::path).collect();
         read.extend(self.poses.file());
         read.extend(self.path.as_deref());
-        let files: Vec<&PathBuf> = [&self.output, &self.report].into_iter().flatten().collect();
-        check_outputs(&files, &read, self.force, console)?;
+        let files = [&self.output, &self.report].into_iter().flatten();
+        check_outputs(files, &read, self.force, console)?;
         describe_solids(&solids, console);
         let [a, b] = [0, 1].map(|side| &solids[side].solid);
         let wants = |quantity| self.compute.contains(&quantity);
@@ -157,13 +154,12 @@ impl Collide {
         };
         let mut staged = Vec::new();
         if let Some(file) = &self.output {
-            let table = collisions::write(file, &results.poses, &results.reports)?;
+            let table = write_table(file, &results.poses, &results.reports)?;
             staged.push((table, file));
         }
         if let Some(file) = &self.report {
             let text = results.page(viewer.as_ref())?;
-            let page = StagedFile::write(file, |file| file.write_all(text.as_bytes()))?;
-            staged.push((page, file));
+            staged.push((write_text(file, &text)?, file));
         }
         place_all(staged)?;
         console.say(match &results.reports[..] {
@@ -184,7 +180,7 @@ impl Collide {
     }
 
     fn object(&self, results: &Results) -> Value {
-        let rows = || collisions::objects(&results.poses, &results.reports);
+        let rows = || objects(&results.poses, &results.reports);
         json!({
             "a": results.solids[0].object(),
             "b": results.solids[1].object(),
@@ -213,7 +209,6 @@ struct Results {
     solids: Vec<SolidInput>,
     poses: Vec<Pose>,
     reports: Vec<CollisionReport>,
-    /// Wall time of all poses.
     seconds: f64,
     impact: Option<Impact>,
     /// Width of the gaps that the balls leave undecided.
@@ -221,24 +216,22 @@ struct Results {
 }
 
 impl Results {
-    /// Poses with a verdict.
     fn count(&self, verdict: Verdict) -> usize {
         let reports = self.reports.iter();
         reports.filter(|report| report.verdict == verdict).count()
     }
 
-    /// The report as a page.
     fn page(&self, viewer: Option<&Viewer>) -> Result<String, Error> {
         let [a, b] = [0, 1].map(|side| {
-            let name = self.solids[side].path().file_name().unwrap_or_default();
-            name.to_string_lossy().into_owned()
+            let name = self.solids[side].path().file_name();
+            name.unwrap_or_default().to_string_lossy()
         });
         let shown = |side: usize| {
             let solid = &self.solids[side].solid;
             shown_surface(&solid.outer(), solid.origin())
         };
         let (first, second) = (shown(0)?, shown(1)?);
-        let (header, records) = collisions::table(&self.poses, &self.reports);
+        let (header, records) = header_and_records(&self.poses, &self.reports);
         let report = SolidsReport {
             title: format!("Collisions of {a} with {b}"),
             sentences: vec![
@@ -293,23 +286,14 @@ impl Results {
 
 fn one_pose(report: &CollisionReport) -> String {
     let point = |point: [f64; 3]| {
-        format!(
-            "({}, {}, {})",
-            Figure(point[0]),
-            Figure(point[1]),
-            Figure(point[2])
-        )
+        let [x, y, z] = point.map(Figure);
+        format!("({x}, {y}, {z})")
     };
     // A force or torque that vanishes is computed as some 1e-15 of the energy; that is shown as 0.
-    let least = report
-        .contact
-        .map_or(0.0, |contact| 1e-12 * contact.energy.abs());
-    let without_rounding = |component: f64| {
-        if component.abs() < least {
-            0.0
-        } else {
-            component
-        }
+    let energy = report.contact.map_or(0.0, |contact| contact.energy);
+    let without_rounding = |component: f64| match component.abs() < 1e-12 * energy.abs() {
+        true => 0.0,
+        false => component,
     };
     let mut lines = vec![format!(
         "Verdict: {} (certified by {})",
@@ -361,13 +345,12 @@ fn impact_text(impact: &Impact, band: f64) -> String {
                 Some(time) => format!("the solids have met by time {}", Figure(time)),
                 None => "no balls inside both are known to meet later".to_owned(),
             };
-            let sharper = if band > 0.0 {
-                format!(
+            let sharper = match band > 0.0 {
+                true => format!(
                     ". At the first time the gap is below {}, which the balls leave open; a finer --grid narrows it",
                     Figure(band)
-                )
-            } else {
-                String::new()
+                ),
+                false => String::new(),
             };
             format!(
                 "First impact: the path is free until time {} (in poses from the first), at pose \
@@ -376,4 +359,89 @@ fn impact_text(impact: &Impact, band: f64) -> String {
             )
         }
     }
+}
+
+/// The columns, in order.
+#[rustfmt::skip]
+const COLUMNS: [&str; 31] = [
+    "pose", "qw", "qx", "qy", "qz", "tx", "ty", "tz", "verdict", "certified_by", "distance_low", "distance_high",
+    "witness_a_x", "witness_a_y", "witness_a_z", "witness_b_x", "witness_b_y", "witness_b_z", "overlap_volume",
+    "overlap_volume_bound", "overlap_energy", "force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z",
+    "energy_bound", "ball_pairs", "modes", "microseconds",
+];
+
+/// The values of each row; `null` for quantities that were not computed. Poses are numbered from 1.
+fn table_rows<'a>(
+    poses: &'a [Pose],
+    reports: &'a [CollisionReport],
+) -> impl Iterator<Item = Vec<Value>> + use<'a> {
+    let rows = (1usize..).zip(poses).zip(reports);
+    rows.map(|((number, pose), report)| {
+        let translation: [f64; 3] = pose.translation.into();
+        let distance = report.distance;
+        let witness = |side: usize| vector(distance.map(|distance| distance.witnesses[side]));
+        let volume = report.shared_volume;
+        let contact = report.contact;
+        let mut row = vec![json!(number)];
+        row.extend(pose.quaternion().map(Value::from));
+        row.extend(translation.map(Value::from));
+        row.push(json!(report.verdict.name()));
+        row.push(json!(report.certificate.name()));
+        row.push(json!(distance.map(|distance| distance.low)));
+        row.push(json!(distance.map(|distance| distance.high)));
+        row.extend(witness(0));
+        row.extend(witness(1));
+        row.push(json!(volume.map(|volume| volume.value)));
+        row.push(json!(volume.map(|volume| volume.bound)));
+        row.push(json!(contact.map(|contact| contact.energy)));
+        row.extend(vector(contact.map(|contact| contact.force)));
+        row.extend(vector(contact.map(|contact| contact.torque)));
+        row.push(json!(contact.map(|contact| contact.bound)));
+        row.push(json!(report.ball_pairs));
+        row.push(json!(report.modes));
+        row.push(json!((report.seconds * 1e7).round() / 10.0));
+        row
+    })
+}
+
+fn vector(vector: Option<[f64; 3]>) -> [Value; 3] {
+    [0, 1, 2].map(|axis| json!(vector.map(|vector| vector[axis])))
+}
+
+fn write_table(
+    path: &Path,
+    poses: &[Pose],
+    reports: &[CollisionReport],
+) -> Result<StagedFile, Error> {
+    StagedFile::write(path, |file| {
+        let mut table = TableWriter::new(file);
+        table.row(COLUMNS)?;
+        for row in table_rows(poses, reports) {
+            table.row(row.iter().map(field))?;
+        }
+        table.flush()
+    })
+}
+
+/// The header and the rows, as they are written.
+fn header_and_records(
+    poses: &[Pose],
+    reports: &[CollisionReport],
+) -> (StringRecord, Vec<StringRecord>) {
+    let records = table_rows(poses, reports).map(|row| row.iter().map(field).collect());
+    (COLUMNS.iter().collect(), records.collect())
+}
+
+/// The rows as JSON objects with the names of the columns.
+fn objects(poses: &[Pose], reports: &[CollisionReport]) -> Vec<Value> {
+    let object = |row| {
+        COLUMNS
+            .map(str::to_owned)
+            .into_iter()
+            .zip(row)
+            .collect::<Map<_, _>>()
+    };
+    table_rows(poses, reports)
+        .map(|row| object(row).into())
+        .collect()
 }

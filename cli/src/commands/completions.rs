@@ -1,6 +1,5 @@
 //! `knotdock completions` and `knotdock man`: what shells and `man` know of the command line, from its definition.
 
-use knotdock::output::files::file_error;
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Command};
@@ -9,6 +8,7 @@ use clap_mangen::Man;
 use serde_json::json;
 
 use crate::messages::console::Console;
+use knotdock::output::files::file_error;
 use knotdock::output::files::whole_file::write_whole;
 use knotdock_structures::Error;
 
@@ -26,7 +26,6 @@ pub struct Completions {
 }
 
 impl Completions {
-    /// Prints them, of the command line `command`.
     pub fn run(self, mut command: Command, console: Console) -> Result<(), Error> {
         let mut script = Vec::new();
         clap_complete::generate(self.shell, &mut command, "knotdock", &mut script);
@@ -47,7 +46,6 @@ pub struct ManPages {
 }
 
 impl ManPages {
-    /// Writes them, of the command line `command`.
     pub fn run(self, command: Command, console: Console) -> Result<(), Error> {
         let directory = &self.directory;
         let unwritable = |source| file_error::unwritable(directory, source);
@@ -61,14 +59,12 @@ impl ManPages {
     }
 }
 
-/// A command with all options in its short help: what is left out of that is left out of pages, too, where it has no
-/// longer help.
+/// A command with all options in its short help: pages leave out what that leaves out.
 fn shown_in_full(command: Command) -> Command {
     let command = command.mut_args(|argument| argument.hide_short_help(false));
     command.mut_subcommands(shown_in_full)
 }
 
-/// Writes the page of a command and those of its own commands.
 fn write_page(command: &Command, directory: &Path, pages: &mut Vec<String>) -> Result<(), Error> {
     let name = command
         .get_display_name()

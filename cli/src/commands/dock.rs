@@ -2,26 +2,26 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::tradeoff::choice::Wanted;
 use clap::{Arg, Args, Command, Id};
-use knotdock::dock::memory::process;
-use knotdock::options::values::{ABOVE_ZERO, duration, in_range};
-use knotdock::options::{DockOptions, EngineChoice, option_named};
-use knotdock::threads;
 use serde_json::Value;
 
 use crate::arguments::conformations::ConformationArguments;
 use crate::arguments::machine::settled;
 use crate::arguments::options::{GivenOptions, OfDock, OptionArguments};
 use crate::docking::Docking;
-use crate::ensemble::Ensemble;
+use crate::ensemble::{Ensemble, EnsembleRequest};
 use crate::inputs::bodies::Bodies;
 use crate::inputs::conformations::{Conformation, conformations};
 use crate::inputs::molecules::label;
 use crate::inputs::native::NativeArguments;
 use crate::inputs::request::Request;
 use crate::messages::console::Console;
+use crate::tradeoff::choice::Wanted;
+use knotdock::dock::memory::process;
+use knotdock::options::values::{ABOVE_ZERO, duration, in_range};
+use knotdock::options::{DockOptions, EngineChoice, option_named};
 use knotdock::output::run_folder::Clock;
+use knotdock::threads;
 use knotdock_structures::Error;
 
 /// Dock a ligand to a receptor and rank the poses.
@@ -117,9 +117,7 @@ pub fn in_brief(command: Command) -> Command {
     }
 }
 
-/// What a command line comes to.
 pub enum Prepared {
-    /// One run.
     Run(Box<Docking>),
     /// A run for each pair of conformations.
     Ensemble(Box<Ensemble>),
@@ -134,7 +132,6 @@ impl Prepared {
         }
     }
 
-    /// Whether the directory holds the results already.
     pub fn is_done(&self, console: Console) -> bool {
         match self {
             Self::Run(docking) => docking.is_done(),
@@ -154,8 +151,7 @@ impl Prepared {
 /// Heading of the options that choose others.
 const WITHIN: &str = "Within an error or a time";
 
-/// Arguments that say where a run is and where it goes. Beside options of the machine, only these go with `--rerun`,
-/// and a batch sets them for its pairs.
+/// Arguments on the place of a run: these and options of the machine alone go with `--rerun`; a batch sets them.
 pub const PLACE: [&str; 3] = ["rerun", "output", "force"];
 
 /// The command of [`Dock`] in which `--rerun` goes with nothing that the run.json records.
@@ -171,7 +167,6 @@ pub fn refusing_recorded(command: Command) -> Command {
 }
 
 impl Dock {
-    /// Whether options say where the run goes.
     pub fn names_its_run(&self) -> bool {
         self.output.is_some()
     }
@@ -181,15 +176,13 @@ impl Dock {
         self.options.given().map(drop)
     }
 
-    /// Threads that the options name, and whether the run has to be by itself: it measures time, or works on a graphics
-    /// processor.
+    /// Threads that the options name, and whether the run is docked alone: with a time limit or a graphics processor.
     pub fn own_threads(&self) -> Result<(Option<usize>, bool), Error> {
         let options = self.options.given()?.options;
         let is_alone = self.budget.is_some() || options.search.engine == EngineChoice::Gpu;
         Ok((options.machine.threads, is_alone))
     }
 
-    /// The run that the command line describes.
     fn request(&self, given: GivenOptions) -> Result<Request, Error> {
         let given = given.of_rings()?;
         let symmetry = given.options.search.symmetry;
@@ -209,11 +202,12 @@ impl Dock {
                 "give both files, or one with --symmetry C2 (C3, D2 ...) for a ring of its copies",
             ));
         };
-        Request::read([receptor, ligand], self.native.read()?, given)
+        let native = self.native.read()?;
+        let bodies = Bodies::read(receptor, ligand, &given.options)?;
+        Ok(Request::of(bodies, native, given))
     }
 
-    /// Reads and plans, and hands the docking on to `then`: all on the threads that the options name.
-    /// `count` takes their place where it is given.
+    /// Reads, plans and hands the docking on to `then`, on `count` threads or those that the options name.
     pub fn prepared<T: Send>(
         self,
         console: Console,
@@ -252,7 +246,6 @@ impl Dock {
         ]))
     }
 
-    /// Reads and plans.
     fn prepare(
         self,
         given: GivenOptions,
@@ -272,27 +265,27 @@ impl Dock {
                     let specs = [receptor.spec.clone(), ligand.spec.clone()];
                     Request::of(Bodies::of(specs, &given.options)?, native, given)
                 } else {
-                    if wanted != Wanted::default() {
-                        check_wanted(&given.options)?;
-                    }
+                    check_wanted(wanted, &given.options)?;
                     let sides = [receptors, ligands];
                     let directory = self.output.unwrap_or_else(|| named_after(&sides));
-                    let place = (directory, self.force);
-                    let asked = (given, native, wanted);
-                    let ensemble = Ensemble::prepare(&sides, asked, place, clock, console)?;
+                    let request = EnsembleRequest {
+                        given,
+                        native,
+                        wanted,
+                        directory,
+                        force: self.force,
+                    };
+                    let ensemble = Ensemble::prepare(&sides, request, clock, console)?;
                     return Ok(Prepared::Ensemble(Box::new(ensemble)));
                 }
             }
         };
         let directory = self.output.unwrap_or_else(|| request.directory());
-        if wanted != Wanted::default() {
-            check_wanted(&request.options)?;
-        }
+        check_wanted(wanted, &request.options)?;
         let docking = Docking::prepare(request, wanted, (directory, self.force), clock, console)?;
         Ok(Prepared::Run(Box::new(docking)))
     }
 
-    /// Docks.
     pub fn run(self, console: Console) -> Result<(), Error> {
         let done = self.prepared(console, None, |prepared| prepared.run(console, console))?;
         console.result(&done)?;
@@ -302,18 +295,18 @@ impl Dock {
 
 /// The directory of an ensemble that names none: that of the run of its first conformations.
 fn named_after(sides: &[Vec<Conformation>; 2]) -> PathBuf {
-    let label = |side: &Vec<Conformation>| {
-        let first = side.first().map(|conformation| &conformation.spec);
-        first.map_or_else(String::new, |spec| {
-            label(&spec.path, spec.chains.as_deref())
-        })
-    };
-    let [receptor, ligand] = sides.each_ref().map(label);
+    let [receptor, ligand] = sides.each_ref().map(|side| {
+        let spec = &side[0].spec;
+        label(&spec.path, spec.chains.as_deref())
+    });
     PathBuf::from(format!("knotdock_{receptor}_{ligand}"))
 }
 
 /// Refuses options for which nothing can be chosen by an error or a time.
-fn check_wanted(options: &DockOptions) -> Result<(), Error> {
+fn check_wanted(wanted: Wanted, options: &DockOptions) -> Result<(), Error> {
+    if wanted == Wanted::default() {
+        return Ok(());
+    }
     if options.search.engine == EngineChoice::Gpu {
         let error = "--accuracy and --budget use the times of the CPU, and --engine gpu is given";
         return Err(Error::input(error)

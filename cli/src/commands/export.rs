@@ -3,10 +3,17 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
-use crate::arguments::machine::Threads;
-use crate::records::ensemble_record::is_ensemble;
-use crate::records::recorded_run::RecordedRun;
 use clap::{Args, ValueEnum};
+use serde_json::json;
+
+use crate::arguments::machine::Threads;
+use crate::arguments::output_file::check_not_read;
+use crate::arguments::ranks::Ranks;
+use crate::ensemble::finished::{RunRows, runs};
+use crate::inputs::bodies::Bodies;
+use crate::messages::console::Console;
+use crate::records::is_ensemble;
+use crate::records::recorded_run::RecordedRun;
 use knotdock::dock::pair::Pair;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::complexes::file_names;
@@ -15,17 +22,8 @@ use knotdock::output::files::staging::put_back;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::threads;
-use knotdock_structures::molecule::{ChainMap, Format};
-use serde_json::json;
-
-use crate::arguments::output_file::check_not_read;
-use crate::arguments::ranks::Ranks;
-use crate::ensemble::finished::{RunRows, runs};
-use crate::inputs::bodies::Bodies;
-use crate::inputs::ranked_rows::ranked_places;
-use crate::messages::console::Console;
-use crate::messages::leftovers::warn_leftovers;
 use knotdock_structures::Error;
+use knotdock_structures::molecule::{ChainMap, Format};
 
 /// Write complexes (or assemblies of meshes) of chosen ranks of a run, receptor and placed ligand in one file.
 #[derive(Args, Debug)]
@@ -39,7 +37,7 @@ pub struct Export {
     /// Of these ranks only the best of each cluster, where the table lists every pose.
     #[arg(long)]
     best_of_cluster: bool,
-    /// Format: pdb or cif, a file a rank; or ensemble, one file with a model a rank (ensemble.pdb, or .cif where PDB
+    /// Format: pdb or cif, one file per rank; or ensemble, one file with one model per rank (ensemble.pdb, or .cif where PDB
     /// cannot hold it) [default: pdb, or cif where an input was mmCIF or PDB cannot hold it].
     #[arg(long, value_name = "pdb|cif|ensemble", hide_possible_values = true)]
     format: Option<ExportFormat>,
@@ -62,19 +60,17 @@ enum ExportFormat {
 }
 
 impl Export {
-    /// Writes the complexes.
     pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.export(console))?
     }
 
-    /// Writes them on the threads of the caller.
     fn export(self, console: Console) -> Result<(), Error> {
         put_back(&self.run)?;
         let own = self.run.join("top");
         let folder = self.output.clone().unwrap_or(own);
         let exports = self.exports(&folder)?;
         let export = Addition::open(&folder, Some(&self.run))?;
-        warn_leftovers(&export.leftovers, console);
+        console.warn_leftovers(&export.leftovers);
         if self.format == Some(ExportFormat::Ensemble) {
             let pairs = exports.iter().map(RunExport::pairs);
             let mut pairs: Vec<PosedPair> = pairs.collect::<Result<Vec<_>, _>>()?.concat();
@@ -106,8 +102,8 @@ impl Export {
         }
         export.place(self.force)?;
         written.sort_by_key(|(rank, _, _)| self.place(*rank));
-        let path = |name: &str| folder.join(name).display().to_string();
-        let paths: Vec<String> = written.iter().map(|(_, name, _)| path(name)).collect();
+        let paths = written.iter().map(|(_, name, _)| folder.join(name));
+        let paths: Vec<String> = paths.map(|path| path.display().to_string()).collect();
         console.say(paths.join("\n"));
         let is_one = exports.len() == 1;
         let chains = written.last().and_then(|(_, _, chains)| chains.clone());
@@ -138,7 +134,7 @@ impl Export {
         }
         let table_path = self.run.join("poses.csv");
         let table = PoseTable::read(&table_path)?;
-        let mut places = ranked_places(&table, &table_path, &self.rank)?;
+        let mut places = self.rank.places(&table, &table_path)?;
         if self.best_of_cluster {
             // Rows of a cluster stand best first, and a row without one is by itself.
             let mut seen = HashSet::new();
@@ -163,7 +159,7 @@ impl Export {
                 .at(&table_path)
                 .help("take the table as the run wrote it; `knotdock dock --rerun` makes it again"));
             }
-            let bodies = Bodies::recorded([&run.receptor, &run.ligand], &run_path, &run.options)?;
+            let bodies = Bodies::recorded(run.inputs.pair(), &run_path, &run.options)?;
             if self.format.is_some() && bodies.are_meshes() {
                 let error = "--format is of molecules, and this is a run of meshes";
                 return Err(Error::input(error)
@@ -186,7 +182,6 @@ impl Export {
 }
 
 impl RunExport {
-    /// Each pose with its molecules.
     fn pairs(&self) -> Result<Vec<PosedPair<'_>>, Error> {
         let Pair::Molecules(molecules) = self.bodies.pair() else {
             return Err(Error::input("these are meshes, not molecules"));

@@ -1,27 +1,28 @@
-//! `knotdock inspect`: the contents of a structure file, what of it is kept, and what is assumed.
+//! `knotdock inspect`: the contents of a structure file, the parts that are kept, and assumptions.
 
 use std::path::{Path, PathBuf};
 
-use crate::records::joined;
-use crate::tables::atom_table;
-use crate::tables::report::counted;
 use clap::{ArgGroup, Args};
-use knotdock::output::files::molecule_file;
-use knotdock::priors::{Findings, PRIORS};
-use knotdock::rank::term_counts;
-use knotdock_scoring::terms::pose::TermDefinition;
-use knotdock_structures::ball_union::{Volume, union_volume};
-use knotdock_structures::molecule::{
-    Format, InputSpec, LabelReport, Molecule, Termini, UnresolvedResidues, fits,
-};
 use serde_json::{Map, Value, json};
 
 use crate::arguments::options::{OfInspect, OptionArguments};
-use crate::arguments::output_file::{check_output, is_same};
+use crate::arguments::output_file::check_outputs;
 use crate::inputs::molecules::Input;
 use crate::messages::console::Console;
-use crate::messages::dock::metal_bound;
+use crate::messages::dock::{counted_names, metal_bound, termini_text};
+use crate::records::joined;
+use crate::tables::report::counted;
+use crate::tables::{Column, write_table};
+use knotdock::output::files::molecule_file;
+use knotdock::output::files::whole_file::write_whole;
+use knotdock::priors::{Findings, PRIORS};
+use knotdock::rank::term_counts;
+use knotdock_scoring::terms::pose::TermDefinition;
 use knotdock_structures::Error;
+use knotdock_structures::ball_union::{Volume, union_volume};
+use knotdock_structures::molecule::{
+    AtomFate, DropKind, Format, InputSpec, LabelReport, Molecule, Termini, UnresolvedResidues, fits,
+};
 
 /// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges
 /// assumed.
@@ -45,27 +46,21 @@ pub struct Inspect {
     options: OptionArguments<OfInspect>,
 }
 
-/// Points a sphere for the accessible area of a molecule: more where the errors of few atoms do not cancel, about
-/// 0.3% of the total.
+/// Points per sphere for the accessible area: for about 0.3% of the total.
 fn surface_points(atoms: usize) -> usize {
     (4_000_000 / atoms.max(1)).clamp(100, 960)
 }
 
 impl Inspect {
-    /// Inspects.
     pub fn run(self, console: Console) -> Result<(), Error> {
         let options = self.options.given()?.options;
         let reading = options.input.reading();
         let ph = options.terms.ph;
         let structure = InputSpec::parse(&self.file)?.path;
-        let format = self.checked_outputs(&structure, console)?;
-        let (input, fates) = if self.atoms.is_some() {
-            let (input, fates) = Input::read_with_fates(&self.file, &reading)?;
-            (input, Some(fates))
-        } else {
-            let [input] = Input::read_all([&self.file], &reading)?;
-            (input, None)
-        };
+        let files = [&self.atoms, &self.write].into_iter().flatten();
+        check_outputs(files, &[&structure], self.force, console)?;
+        let format = self.write.as_deref().map(written_format).transpose()?;
+        let (input, fates) = Input::read_with_fates(&self.file, &reading)?;
         let molecule = &input.molecule;
         if let (Some(file), Some(format)) = (&self.write, format) {
             fits(format, molecule).map_err(|error| {
@@ -81,8 +76,8 @@ impl Inspect {
             labels_text(&found, ph),
             counts_text(&found.counts)
         ));
-        if let (Some(path), Some(fates)) = (&self.atoms, fates) {
-            atom_table::write(path, &fates)?;
+        if let Some(path) = &self.atoms {
+            write_atoms(path, &fates)?;
             console.say(format!("{} atoms in {}", fates.len(), path.display()));
         }
         if let (Some(path), Some(format)) = (&self.write, format) {
@@ -96,30 +91,8 @@ impl Inspect {
         console.result(&found.entries(&input)?)?;
         Ok(())
     }
-
-    /// Refuses files to write that are there or coincide; returns the format of `--write`.
-    fn checked_outputs(&self, structure: &Path, console: Console) -> Result<Option<Format>, Error> {
-        if let Some(file) = &self.atoms {
-            check_output(file, [structure], self.force, console)?;
-        }
-        let Some(file) = &self.write else {
-            return Ok(None);
-        };
-        check_output(file, [structure], self.force, console)?;
-        if self
-            .atoms
-            .as_ref()
-            .is_some_and(|atoms| is_same(atoms, file))
-        {
-            return Err(Error::input("--atoms and --write name the same file")
-                .at(file)
-                .help("give each a name of its own"));
-        }
-        Ok(Some(written_format(file)?))
-    }
 }
 
-/// Findings on a molecule.
 struct Inspection {
     labels: LabelReport,
     unresolved: UnresolvedResidues,
@@ -135,7 +108,6 @@ struct Inspection {
 }
 
 impl Inspection {
-    /// Inspects a molecule at a pH.
     fn of(molecule: &Molecule, ph: f64) -> Result<Self, Error> {
         let labels = molecule.labels(ph);
         let area = molecule
@@ -158,7 +130,6 @@ impl Inspection {
         })
     }
 
-    /// The entries of the result.
     fn entries(self, input: &Input) -> Result<Value, Error> {
         let findings = PRIORS.iter().zip(self.findings);
         let findings = findings.map(|(prior, found)| (prior.entry_name().to_owned(), found.entry));
@@ -177,7 +148,6 @@ impl Inspection {
     }
 }
 
-/// Numbers of parts that pose terms read, by the ids of the terms.
 fn counts_entry(counts: &[(&TermDefinition, usize)]) -> Map<String, Value> {
     let entries = counts.iter();
     entries
@@ -185,7 +155,6 @@ fn counts_entry(counts: &[(&TermDefinition, usize)]) -> Map<String, Value> {
         .collect()
 }
 
-/// Numbers of parts that pose terms read, in words.
 fn counts_text(counts: &[(&TermDefinition, usize)]) -> String {
     let terms = counts
         .iter()
@@ -193,7 +162,6 @@ fn counts_text(counts: &[(&TermDefinition, usize)]) -> String {
     format!("Pose terms: {}", terms.collect::<Vec<_>>().join("; "))
 }
 
-/// The format of the file to write.
 fn written_format(file: &Path) -> Result<Format, Error> {
     molecule_file::format_of_name(file).ok_or_else(|| {
         Error::input("the name of the structure to write ends neither in .pdb nor in .cif")
@@ -213,12 +181,6 @@ fn labels_text(found: &Inspection, ph: f64) -> String {
         findings,
         ..
     } = found;
-    let names = |unknown: &std::collections::BTreeMap<String, usize>| {
-        let names = unknown
-            .iter()
-            .map(|(name, count)| format!("{count} {name}"));
-        names.collect::<Vec<_>>().join(", ")
-    };
     let [amino, carboxyl] = labels.termini;
     let mut lines = vec![
         format!(
@@ -231,10 +193,7 @@ fn labels_text(found: &Inspection, ph: f64) -> String {
             "Unresolved residues: {} in {}, and past {}; {} near termini or gaps",
             unresolved.residues,
             counted(unresolved.gaps, "gap"),
-            match unresolved.ends {
-                1 => "1 terminus".to_owned(),
-                ends => format!("{ends} termini"),
-            },
+            termini_text(unresolved.ends),
             counted(termini.residues, "residue")
         ),
         format!("Atoms of known contact type: {}", labels.typed_atoms),
@@ -251,16 +210,62 @@ fn labels_text(found: &Inspection, ph: f64) -> String {
     if !labels.unknown_charges.is_empty() {
         lines.push(format!(
             "No charges known, counted as none: {}",
-            names(&labels.unknown_charges)
+            counted_names(&labels.unknown_charges)
         ));
     }
     if !labels.unknown_types.is_empty() {
         lines.push(format!(
             "No contact types: {}",
-            names(&labels.unknown_types)
+            counted_names(&labels.unknown_types)
         ));
     }
     lines.join("\n")
+}
+
+/// The columns, in order.
+const COLUMNS: [Column<AtomFate>; 16] = [
+    ("line", |fate| json!(fate.atom.line)),
+    ("record", |fate| {
+        json!(if fate.atom.hetero { "HETATM" } else { "ATOM" })
+    }),
+    ("atom", |fate| json!(fate.atom.name)),
+    ("altloc", |fate| json!(fate.atom.alternate_location)),
+    ("residue", |fate| json!(fate.atom.residue_name)),
+    ("chain", |fate| json!(fate.atom.chain)),
+    ("number", |fate| json!(fate.atom.residue_number)),
+    ("insertion", |fate| json!(fate.atom.insertion_code)),
+    ("element", |fate| json!(fate.atom.element)),
+    ("x", |fate| json!(fate.atom.position[0])),
+    ("y", |fate| json!(fate.atom.position[1])),
+    ("z", |fate| json!(fate.atom.position[2])),
+    ("occupancy", |fate| json!(fate.atom.occupancy)),
+    ("b_factor", |fate| json!(fate.atom.b_factor)),
+    ("radius", |fate| {
+        json!(fate.dropped.is_none().then_some(fate.atom.radius))
+    }),
+    ("dropped", |fate| json!(fate.dropped.map(reason))),
+];
+
+fn write_atoms(path: &Path, fates: &[AtomFate]) -> Result<(), Error> {
+    write_whole(path, |file| write_table(file, &COLUMNS, fates))
+}
+
+/// A reason as the report names it.
+fn reason(kind: DropKind) -> &'static str {
+    match kind {
+        DropKind::Chain => "chain",
+        DropKind::OtherResidue => "other_residue",
+        DropKind::Assembly => "assembly",
+        DropKind::Hydrogen => "hydrogen",
+        DropKind::Water => "water",
+        DropKind::Residue => "residue",
+        DropKind::PseudoAtom => "pseudo_atom",
+        DropKind::Additive => "additive",
+        DropKind::Hetatm => "hetatm",
+        DropKind::AlternateLocation => "alternate_location",
+        DropKind::LowConfidence => "low_confidence",
+        DropKind::Model => "model",
+    }
 }
 
 #[cfg(test)]

@@ -1,22 +1,26 @@
 //! `knotdock interface`: what holds a complex together, and how it scores, of any complex file.
 
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
 
-use crate::tables::interface::{InterfaceRow, objects, write_pairs, write_rows};
-use crate::tables::report::{counted, text_table};
 use clap::Args;
-use knotdock::interface::{Interface, PlacedScore, score_in_place};
-use knotdock::options::DockOptions;
-use knotdock::output::files::whole_file::write_whole;
-use knotdock::threads;
-use knotdock_structures::molecule::Molecule;
-use serde_json::json;
+use serde_json::{Map, Value, json};
 
 use crate::arguments::options::{OfScore, OptionArguments};
-use crate::arguments::output_file::check_output;
+use crate::arguments::output_file::check_outputs;
 use crate::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_model};
 use crate::messages::console::Console;
+use crate::tables::report::{counted, text_table};
+use crate::tables::{Column, field, write_table};
+use knotdock::interface::{Contact, Interface, PlacedScore, ResidueName, score_in_place};
+use knotdock::options::DockOptions;
+use knotdock::output::files::whole_file::write_whole;
+use knotdock::table_text::cells::TableWriter;
+use knotdock::threads;
+use knotdock_scoring::terms::effect::Effect;
+use knotdock_scoring::terms::pose::POSE_TERMS;
 use knotdock_structures::Error;
+use knotdock_structures::molecule::Molecule;
 
 /// Describe the interface of complexes: contacts, hydrogen bonds, salt bridges, buried surface, and the score of each.
 ///
@@ -50,13 +54,11 @@ impl InterfaceCommand {
         })?
     }
 
-    /// Describes them on the threads of the caller.
     fn describe(&self, options: &DockOptions, console: Console) -> Result<u8, Error> {
         let (files, sides) = files_and_chains(&self.words, "interface")?;
-        let read: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
-        for file in [&self.output, &self.contacts].into_iter().flatten() {
-            check_output(file, read.iter().map(PathBuf::as_path), self.force, console)?;
-        }
+        let read: Vec<&Path> = files.iter().map(Path::new).collect();
+        let written = [&self.output, &self.contacts].into_iter().flatten();
+        check_outputs(written, &read, self.force, console)?;
         let (files, reading) = ((files, sides.as_ref()), options.input.reading());
         let (rows, code) = for_each_model(files, &reading, console, |file, sides| {
             row(file, sides, options)
@@ -142,7 +144,6 @@ fn text(row: &InterfaceRow) -> String {
     )
 }
 
-/// The terms of a score in words.
 fn terms(score: &PlacedScore) -> String {
     let effects = knotdock_scoring::terms::effect::Effect::ALL
         .into_iter()
@@ -160,7 +161,6 @@ fn terms(score: &PlacedScore) -> String {
     effects.chain(pose).collect::<Vec<_>>().join(", ")
 }
 
-/// Many complexes as a table.
 fn listing(rows: &[InterfaceRow]) -> String {
     let lines = rows.iter().map(|row| {
         let interface = &row.interface;
@@ -182,4 +182,101 @@ fn listing(rows: &[InterfaceRow]) -> String {
         "file|model|chains|contacts|hydrogen bonds|salt bridges|buried, Å²|Sc|score",
         lines,
     )
+}
+
+#[derive(Clone, Debug)]
+pub struct InterfaceRow {
+    pub file: String,
+    /// Its place among the models of the file, from 1.
+    pub model: usize,
+    pub chains: [String; 2],
+    /// What holds it together.
+    pub interface: Interface,
+    pub score: PlacedScore,
+}
+
+impl InterfaceRow {
+    fn columns(&self) -> Map<String, Value> {
+        let Self {
+            interface, score, ..
+        } = self;
+        let mut columns = Map::new();
+        let mut add = |name: &str, value: Value| columns.insert(name.to_owned(), value);
+        add("file", json!(self.file));
+        add("model", json!(self.model));
+        add("chains_1", json!(self.chains[0]));
+        add("chains_2", json!(self.chains[1]));
+        add("contacts", json!(interface.pairs.len()));
+        add("residues_1", json!(interface.residues[0]));
+        add("residues_2", json!(interface.residues[1]));
+        add("hydrogen_bonds", json!(interface.hydrogen_bonds));
+        add("salt_bridges", json!(interface.salt_bridges));
+        add(
+            "buried_area",
+            json!(interface.buried[0] + interface.buried[1]),
+        );
+        add("buried_area_1", json!(interface.buried[0]));
+        add("buried_area_2", json!(interface.buried[1]));
+        add(
+            "shape_complementarity",
+            json!(interface.shape_complementarity),
+        );
+        add("pose_score", json!(score.pose_score()));
+        add("search_score", json!(score.search_score));
+        for effect in Effect::ALL {
+            add(effect.name(), json!(score.effects[effect as usize]));
+        }
+        for term in POSE_TERMS.iter().filter(|term| term.is_shown_always) {
+            add(term.id, json!(score.pose_terms.get(term.id)));
+        }
+        columns
+    }
+}
+
+/// The rows as JSON objects, each with its pairs of residues.
+pub fn objects(rows: &[InterfaceRow]) -> Vec<Value> {
+    let object = |row: &InterfaceRow| {
+        let mut object = row.columns();
+        object.insert("pairs".to_owned(), json!(row.interface.pairs));
+        Value::Object(object)
+    };
+    rows.iter().map(object).collect()
+}
+
+/// Writes a row for each complex.
+pub fn write_rows(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Result<()> {
+    let mut table = TableWriter::new(stream);
+    if let Some(first) = rows.first() {
+        table.row(first.columns().keys())?;
+    }
+    for row in rows {
+        table.row(row.columns().values().map(field))?;
+    }
+    table.flush()
+}
+
+fn pair_columns<'a>() -> [Column<(&'a InterfaceRow, &'a Contact<ResidueName>)>; 12] {
+    [
+        ("file", |(row, _)| json!(row.file)),
+        ("model", |(row, _)| json!(row.model)),
+        ("chain_1", |(_, pair)| json!(pair.residues[0].chain)),
+        ("residue_1", |(_, pair)| json!(pair.residues[0].number)),
+        ("name_1", |(_, pair)| json!(pair.residues[0].name)),
+        ("chain_2", |(_, pair)| json!(pair.residues[1].chain)),
+        ("residue_2", |(_, pair)| json!(pair.residues[1].number)),
+        ("name_2", |(_, pair)| json!(pair.residues[1].name)),
+        ("distance", |(_, pair)| json!(pair.distance)),
+        ("hydrogen_bonds", |(_, pair)| json!(pair.hydrogen_bonds)),
+        ("hydrogen_bond_distance", |(_, pair)| {
+            json!(pair.hydrogen_bond_distance)
+        }),
+        ("salt_bridge", |(_, pair)| json!(pair.salt_bridge)),
+    ]
+}
+
+pub fn write_pairs(stream: &mut dyn io::Write, rows: &[InterfaceRow]) -> io::Result<()> {
+    let pairs = rows
+        .iter()
+        .flat_map(|row| row.interface.pairs.iter().map(move |pair| (row, pair)));
+    write_table(stream, &pair_columns(), pairs)
 }

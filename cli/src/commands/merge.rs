@@ -2,13 +2,12 @@
 
 use std::path::PathBuf;
 
-use crate::shards::merge::{Merged, merge};
-use crate::tables::report::counted;
 use clap::Args;
 use serde_json::json;
 
 use crate::messages::console::Console;
-use crate::messages::leftovers::warn_leftovers;
+use crate::shards::merge::{Merged, merge};
+use crate::tables::report::counted;
 use knotdock_structures::Error;
 
 /// Put the shards of a batch together, in the order of its table of pairs.
@@ -31,7 +30,6 @@ pub struct Merge {
 }
 
 impl Merge {
-    /// Merges.
     pub fn run(self, console: Console) -> Result<(), Error> {
         let out = match (self.output, self.directories.as_slice()) {
             (Some(out), _) => out,
@@ -50,7 +48,7 @@ impl Merge {
             poses,
             leftovers,
         } = merge(&self.directories, &out, self.partial, self.force)?;
-        warn_leftovers(&leftovers, console);
+        console.warn_leftovers(&leftovers);
         let path = |path: PathBuf| path.display().to_string();
         let (results, poses) = (path(results), poses.map(path));
         let beside = poses.as_ref().map(|poses| format!(" and {poses}"));

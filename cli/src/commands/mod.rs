@@ -1,4 +1,4 @@
-//! The commands, a file or folder each: options, calls of the library, and what is written and printed.
+//! The commands, one file or folder each: options, calls of the library, output.
 
 pub mod batch;
 pub mod collide;

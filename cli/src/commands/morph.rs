@@ -1,9 +1,16 @@
 //! `knotdock morph`: morphological operations on solids.
 
-use crate::arguments::options::{OfMachine, TypedOptions};
 use std::path::{Path, PathBuf};
 
 use clap::{Args, Subcommand};
+use serde_json::json;
+
+use crate::arguments::machine::settled;
+use crate::arguments::options::{OfMachine, OptionArguments};
+use crate::arguments::solid_output::{SolidOutput, SolidResult};
+use crate::inputs::poses::pose_file;
+use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
+use crate::messages::console::Console;
 use knotdock::geometry::Bracket;
 use knotdock::geometry::morphology::difference::difference;
 use knotdock::geometry::morphology::products::{product, quotient};
@@ -13,19 +20,12 @@ use knotdock::options::SampleGrid;
 use knotdock::options::values::{ABOVE_ZERO, DISTANCE, LENGTH, in_range};
 use knotdock::threads;
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::mesh::Figure;
-use serde_json::json;
-
-use crate::arguments::memory;
-use crate::arguments::solid_output::{SolidOutput, SolidResult};
-use crate::inputs::poses::pose_file;
-use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
-use crate::messages::console::Console;
 use knotdock_structures::Error;
+use knotdock_structures::mesh::Figure;
 
-/// Grow, shrink, open, close, add, subtract and sweep solids: the result lies between two sets of balls.
+/// Grow, shrink, open, close, add, subtract and sweep solids: the result is between two sets of balls.
 ///
-/// A solid is a mesh, a molecule or a file of balls. Inner balls lie in the true result, outer balls hold it, and both
+/// A solid is a mesh, a molecule or a file of balls. Inner balls are in the true result, outer balls hold it, and both
 /// volumes are reported. Shrinking, opening, closing, differences and quotients sample the complement by balls; a finer
 /// --complement-grid brings the two sets closer.
 #[derive(Args, Debug)]
@@ -76,7 +76,7 @@ enum Operation {
     },
     /// All points of a solid in any of the poses.
     Product(Poses),
-    /// The points that lie in a solid in each of the poses.
+    /// The points that are in a solid in each of the poses.
     Quotient(Poses),
 }
 
@@ -119,7 +119,7 @@ struct Common {
     )]
     complement_grid: SampleGrid,
     #[command(flatten)]
-    machine: TypedOptions<OfMachine>,
+    machine: OptionArguments<OfMachine>,
 }
 
 /// Step of a sweep as a share of the solid's longest edge.
@@ -129,7 +129,6 @@ const STEP: f64 = 0.02;
 struct Request<'a> {
     name: &'static str,
     solids: Vec<&'a str>,
-    /// The file of poses.
     poses: Option<&'a Path>,
     common: &'a Common,
 }
@@ -167,21 +166,25 @@ impl Pair {
 }
 
 impl Morph {
-    /// Runs the command.
     pub fn run(self, console: Console) -> Result<(), Error> {
-        let machine = &self.operation.request().common.machine.options.machine;
-        threads::on(machine.thread_count(), || self.compute(console))?
+        let machine = settled(
+            &self
+                .operation
+                .request()
+                .common
+                .machine
+                .given()?
+                .options
+                .machine,
+        );
+        let allowed = machine.memory;
+        threads::on(machine.thread_count(), || self.compute(allowed, console))?
     }
 
-    fn compute(&self, console: Console) -> Result<(), Error> {
+    /// Computes with `allowed` bytes of memory.
+    fn compute(&self, allowed: Option<u64>, console: Console) -> Result<(), Error> {
         let request = self.operation.request();
         let common = request.common;
-        let allowed = common
-            .machine
-            .options
-            .machine
-            .memory
-            .or_else(memory::default_limit);
         let poses = request.poses.map(pose_file).transpose()?;
         let inputs = read_solids(&request.solids, &common.solids, allowed)?;
         let mut read: Vec<&Path> = inputs.iter().map(SolidInput::path).collect();
@@ -214,7 +217,6 @@ impl Morph {
         console.result(&object)
     }
 
-    /// The result of the operation on its solids.
     fn result(
         &self,
         solids: &[Bracket],

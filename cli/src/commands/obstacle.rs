@@ -1,9 +1,18 @@
 //! `knotdock obstacle`: the translations at which two solids meet.
 
-use crate::arguments::options::{OfMachine, TypedOptions};
 use std::path::Path;
 
 use clap::Args;
+use serde_json::{Value, json};
+
+use crate::arguments::machine::settled;
+use crate::arguments::options::{OfMachine, OptionArguments};
+use crate::arguments::solid_output::{SolidOutput, SolidResult, knots};
+use crate::inputs::checks::room_for_balls;
+use crate::inputs::poses::rotation;
+use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
+use crate::messages::console::Console;
+use crate::tables::report::text_table;
 use knotdock::geometry::Bracket;
 use knotdock::geometry::ball_field::{BallField, FieldGrid};
 use knotdock::geometry::gap::{GapWay, gap_ways};
@@ -14,23 +23,14 @@ use knotdock::output::files::whole_file::StagedFile;
 use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::so3::{rotation_set, set_name};
-use knotdock_structures::Ball;
 use knotdock_structures::mesh::Figure;
 use knotdock_structures::sampling::ball_tree::BallTree;
-use serde_json::{Value, json};
-
-use crate::arguments::memory;
-use crate::arguments::solid_output::{SolidOutput, SolidResult, knots};
-use crate::inputs::poses::rotation;
-use crate::inputs::room::room_for_balls;
-use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
-use crate::messages::console::Console;
-use knotdock_structures::Error;
+use knotdock_structures::{Ball, Error};
 
 /// Compute the obstacle of two solids: the translations of B at which it meets A, at one rotation or over many.
 ///
 /// A solid is a mesh, a molecule or a file of balls. The obstacle is A + (-R B), a union of balls again, a ball for each
-/// pair. Inner balls lie in the true one and outer balls hold it. Free regions are the connected parts of what is left
+/// pair. Inner balls are in the true one and outer balls hold it. Free regions are the connected parts of what is left
 /// free in a padded box: more than one means that B is caged somewhere, or cannot get somewhere.
 #[derive(Args, Debug)]
 pub struct Obstacle {
@@ -48,7 +48,7 @@ pub struct Obstacle {
         conflicts_with = "rotations"
     )]
     rotation: Option<String>,
-    /// Many rotations, spread evenly: -o is then a table of volumes and free regions, a row a rotation.
+    /// Many rotations, spread evenly: -o is then a table of volumes and free regions, one row per rotation.
     #[arg(long, value_name = "COUNT", value_parser = in_range::<usize>(AT_LEAST_ONE), conflicts_with_all = ["surface", "volume_grid", "picture", "report", "set", "reduce"])]
     rotations: Option<usize>,
     /// Length added to each radius, another slice of the lifted obstacle: a clearance, or, below zero, an overlap that
@@ -61,7 +61,7 @@ pub struct Obstacle {
         value_parser = in_range::<f64>(LENGTH)
     )]
     offset: f64,
-    /// Write no ball that lies in another one; without it the table holds a ball for each pair.
+    /// Write no ball that is in another one; without it the table holds a ball for each pair.
     #[arg(long)]
     reduce: bool,
     /// Compute the gap function on a grid of N points an axis by each way too, with residuals and times; N is rounded up
@@ -73,7 +73,7 @@ pub struct Obstacle {
     #[command(flatten)]
     solids: SolidArguments,
     #[command(flatten)]
-    machine: TypedOptions<OfMachine>,
+    machine: OptionArguments<OfMachine>,
 }
 
 /// An obstacle at one rotation.
@@ -85,20 +85,18 @@ struct RotatedObstacle {
 }
 
 impl Obstacle {
-    /// Runs the command.
     pub fn run(self, console: Console) -> Result<(), Error> {
-        threads::on(self.machine.options.machine.thread_count(), || {
-            self.compute(console)
-        })?
+        let machine = settled(&self.machine.given()?.options.machine);
+        let allowed = machine.memory;
+        threads::on(machine.thread_count(), || self.compute(allowed, console))?
     }
 
-    fn compute(&self, console: Console) -> Result<(), Error> {
-        let machine = &self.machine.options.machine;
-        let allowed = machine.memory.or_else(memory::default_limit);
-        let turned = match &self.rotation {
-            Some(text) => rotation(text)?,
-            None => Pose::identity(),
-        };
+    /// Computes with `allowed` bytes of memory.
+    fn compute(&self, allowed: Option<u64>, console: Console) -> Result<(), Error> {
+        let rotated = self
+            .rotation
+            .as_deref()
+            .map_or(Ok(Pose::identity()), rotation)?;
         let names = [self.first.as_str(), &self.second];
         let inputs = read_solids(&names, &self.solids, allowed)?;
         let read: Vec<&Path> = inputs.iter().map(SolidInput::path).collect();
@@ -113,7 +111,7 @@ impl Obstacle {
         });
         match self.rotations {
             Some(count) => self.at_rotations(&a, &b, count, inputs, console),
-            None => self.at_rotation(&a, &b, &turned, inputs, console),
+            None => self.at_rotation(&a, &b, &rotated, inputs, console),
         }
     }
 
@@ -191,11 +189,14 @@ impl Obstacle {
         inputs: Value,
         console: Console,
     ) -> Result<(), Error> {
-        let poses = rotation_set(count).into_iter().map(|rotation| Pose {
-            rotation,
-            ..Pose::identity()
+        let rows = rotation_set(count).into_iter().map(|rotation| {
+            let pose = Pose {
+                rotation,
+                ..Pose::identity()
+            };
+            self.obstacle(a, b, &pose)
         });
-        let rows: Vec<RotatedObstacle> = poses.map(|pose| self.obstacle(a, b, &pose)).collect();
+        let rows: Vec<RotatedObstacle> = rows.collect();
         if let Some(path) = &self.output.output {
             write_rows(&rows, path)?.place()?;
             console.say(format!("Wrote {} rows to {}", rows.len(), path.display()));
@@ -216,19 +217,15 @@ impl Obstacle {
         console.say(format!(
             "  {caged} rotations leave more than one free region about the inner balls"
         ));
+        let mut object = inputs;
         let objects = rows.iter().map(|row| {
             let mut object = row.object();
             object["quaternion"] = json!(row.quaternion);
             object
         });
-        let mut object = inputs;
         object["rotations"] = objects.collect();
-        object["table"] = json!(
-            self.output
-                .output
-                .as_ref()
-                .map(|path| path.display().to_string())
-        );
+        let table = self.output.output.as_ref();
+        object["table"] = json!(table.map(|path| path.display().to_string()));
         console.result(&object)
     }
 }
@@ -251,27 +248,25 @@ fn gap(
     }
     let per_axis = per_axis.max(16).next_multiple_of(4);
     // The mirror image of -R B is R B.
-    let turned: Vec<Ball> = (mirror.inner.iter())
-        .map(|ball| Ball {
-            center: ball.center.map(|part| 0.0 - part),
-            radius: ball.radius,
-        })
-        .collect();
-    let ways = gap_ways(&a.inner, &turned, per_axis)?;
+    let rotated = mirror.inner.iter().map(|ball| Ball {
+        center: ball.center.map(|part| 0.0 - part),
+        radius: ball.radius,
+    });
+    let ways = gap_ways(&a.inner, &rotated.collect::<Vec<_>>(), per_axis)?;
+    let lines = ways.iter().map(|way| {
+        let farthest = way.hausdorff.map(|error| format!("{error:.4e}"));
+        vec![
+            way.name.to_owned(),
+            way.modes.map_or("-".to_owned(), |modes| modes.to_string()),
+            format!("{:.4e}", way.seconds),
+            format!("{:.2e}", way.residual),
+            farthest.unwrap_or("-".to_owned()),
+        ]
+    });
     console.say(format!(
-        "\nGap function of the inner balls on {per_axis}^3 points; residuals as shares of its peak:\n  {:<28}{:>10}{:>13}{:>13}{:>13}",
-        "way", "modes", "seconds", "residual", "Hausdorff"
+        "\nGap function of the inner balls on {per_axis}^3 points; residuals as shares of its peak:\n{}",
+        text_table("way|modes|seconds|residual|Hausdorff", lines)
     ));
-    for way in &ways {
-        let modes = way.modes.map_or("-".to_owned(), |modes| modes.to_string());
-        let farthest = way
-            .hausdorff
-            .map_or("-".to_owned(), |error| format!("{error:.4e}"));
-        console.say(format!(
-            "  {:<28}{modes:>10}{:>13.4e}{:>13.2e}{farthest:>13}",
-            way.name, way.seconds, way.residual
-        ));
-    }
     Ok(ways)
 }
 

@@ -25,7 +25,6 @@ pub struct PresetCommand {
 }
 
 impl PresetCommand {
-    /// Prints it.
     pub fn run(self, console: Console) -> Result<(), Error> {
         // The parser takes no other name.
         let preset = Preset::named(&self.name).unwrap_or(Preset::ALL[0]);
@@ -38,7 +37,7 @@ impl PresetCommand {
     }
 }
 
-/// Every option as a line of a file, a table a subject. Options without a value stand in comments.
+/// Every option as a line of a file, one table per subject. Options without a value are in comments.
 fn all_options(preset: Preset) -> Result<String, Error> {
     let mut options = DockOptions::default();
     preset.apply(&mut options)?;

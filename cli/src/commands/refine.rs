@@ -4,11 +4,19 @@ use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::arguments::machine::Threads;
-use crate::records::recorded_run::RecordedRun;
-use crate::tables::refined;
-use crate::tables::report::counted;
 use clap::Args;
+use serde_json::json;
+
+use crate::arguments::machine::Threads;
+use crate::arguments::output_file::{check_not_read, is_same};
+use crate::arguments::ranks::Ranks;
+use crate::inputs::bodies::Bodies;
+use crate::inputs::molecules::Input;
+use crate::inputs::native::{NativeArguments, NativeFiles};
+use crate::messages::console::Console;
+use crate::records::recorded_run::RecordedRun;
+use crate::refining::{MatchedNative, Refining, Written, objects, write_table};
+use crate::tables::report::counted;
 use knotdock::options::values::{NOT_NEGATIVE, in_range};
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::complexes::file_names;
@@ -17,22 +25,11 @@ use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::refine::RefineOptions;
 use knotdock::threads;
-use serde_json::json;
-
-use crate::arguments::output_file::{check_not_read, is_same};
-use crate::arguments::ranks::Ranks;
-use crate::inputs::bodies::Bodies;
-use crate::inputs::molecules::Input;
-use crate::inputs::native::{NativeArguments, NativeFiles};
-use crate::inputs::ranked_rows::ranked_rows;
-use crate::messages::console::Console;
-use crate::messages::leftovers::warn_leftovers;
-use crate::refining::{Known, Refining, Written};
 use knotdock_structures::Error;
 
 /// Refine chosen poses of a run at atomic resolution: the ligand moves, and side chains of the interface are packed.
 ///
-/// Writes a complex a rank and the table refined.csv into a directory of its own. The run stays as it is.
+/// Writes one complex per rank and the table refined.csv into its own directory. The run stays as it is.
 #[derive(Args, Debug)]
 pub struct Refine {
     /// Directory of the run.
@@ -62,25 +59,25 @@ pub struct Refine {
     threads: Threads,
 }
 
-/// Name of the table.
 const TABLE: &str = "refined.csv";
 
 impl Refine {
-    /// Refines.
     pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.refine(console))?
     }
 
-    /// Refines on the threads of the caller.
     fn refine(self, console: Console) -> Result<(), Error> {
         let start = Instant::now();
         put_back(&self.run)?;
         let run_path = self.run.join("run.json");
         let run = RecordedRun::read(&run_path)?;
         refuse_ring(&run, &run_path)?;
-        let rows = ranked_rows(&self.run.join("poses.csv"), &self.ranks)?;
+        let table_path = self.run.join("poses.csv");
+        let table = PoseTable::read(&table_path)?;
+        let places = self.ranks.places(&table, &table_path)?.into_iter();
+        let rows: Vec<PoseRow> = places.map(|place| table.rows()[place]).collect();
         let [receptor, ligand] = &*molecules(&run, &run_path)?;
-        let native = match (self.native.read()?, &run.native) {
+        let native = match (self.native.read()?, &run.inputs.native) {
             (Some(files), _) => Some(files),
             (None, Some(record)) => Some(NativeFiles::recorded(record, &run_path)?),
             (None, None) => None,
@@ -98,7 +95,7 @@ impl Refine {
             check_not_read(&folder.join(name), read.iter().copied())?;
         }
         let pair = [&receptor.molecule, &ligand.molecule];
-        let known = native.and_then(|files| Known::new(files, pair, console));
+        let known = native.and_then(|files| MatchedNative::new(files, pair, console));
         let options = RefineOptions {
             moves: !self.no_move,
             max_move: self.max_move,
@@ -106,10 +103,10 @@ impl Refine {
             ph: run.options.terms.ph,
         };
         let export = Addition::open(&folder, Some(&self.run))?;
-        warn_leftovers(&export.leftovers, console);
+        console.warn_leftovers(&export.leftovers);
         let refining = Refining::new(pair, options, known.as_ref(), export.stage().folder())?;
         let written = refining.all(&rows, console)?;
-        let table = |file: &mut dyn Write| refined::write_to(file, &written.table);
+        let table = |file: &mut dyn Write| write_table(file, &written.table);
         export.stage().write(TABLE, table)?;
         export.place(self.force)?;
         let seconds = start.elapsed().as_secs_f64();
@@ -154,7 +151,7 @@ fn held(at: &Path, how: &str) -> Error {
         .help("choose another directory with -o, or pass --force to replace them")
 }
 
-/// Refuses the run of a ring, whose copies would each need a move and side chains of their own.
+/// Refuses the run of a ring, whose copies would each need their own move and side chains.
 fn refuse_ring(run: &RecordedRun, run_path: &Path) -> Result<(), Error> {
     let arrangement = Arrangement::from(run.options.search.symmetry);
     if !arrangement.is_ring() {
@@ -169,9 +166,8 @@ fn refuse_ring(run: &RecordedRun, run_path: &Path) -> Result<(), Error> {
     .help("refine a run of two molecules; `knotdock export` writes complexes of rings"))
 }
 
-/// The two molecules of a run.
 fn molecules(run: &RecordedRun, run_path: &Path) -> Result<Box<[Input; 2]>, Error> {
-    match Bodies::recorded([&run.receptor, &run.ligand], run_path, &run.options)? {
+    match Bodies::recorded(run.inputs.pair(), run_path, &run.options)? {
         Bodies::Molecules(inputs) => Ok(inputs),
         Bodies::Meshes(_) => Err(Error::input(
             "this is a run of meshes, which have no atoms to refine",
@@ -184,7 +180,7 @@ fn molecules(run: &RecordedRun, run_path: &Path) -> Result<Box<[Input; 2]>, Erro
 /// Reports the written files and their cost in seconds of wall time.
 fn report(
     written: &Written,
-    known: Option<&Known>,
+    known: Option<&MatchedNative>,
     folder: &Path,
     seconds: f64,
     console: Console,
@@ -199,10 +195,9 @@ fn report(
         cost.unwrap_or_default(),
         folder.display()
     ));
-    let rows = refined::objects(&written.table).into_iter();
-    let of_rows = written.names.iter().zip(&written.table);
-    let poses = rows.zip(of_rows).map(|(mut row, (name, written))| {
-        row.insert("path".to_owned(), json!(path(name)));
+    let rows = objects(&written.table).into_iter();
+    let poses = rows.zip(&written.table).map(|(mut row, written)| {
+        row.insert("path".to_owned(), json!(path(&written.file)));
         row.insert("held".to_owned(), json!(written.refined.held));
         row
     });

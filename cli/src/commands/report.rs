@@ -2,22 +2,20 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::arguments::machine::Threads;
-use crate::records::recorded_run::{RecordedRun, read_record};
-use crate::report::{Listed, RunReport, Viewer};
 use clap::Args;
+use serde_json::json;
+
+use crate::arguments::machine::Threads;
+use crate::inputs::bodies::Bodies;
+use crate::messages::console::Console;
+use crate::records::recorded_run::{RecordedRun, read_record};
+use crate::report::{DirectoryKind, RunReport, Viewer, ViewerArguments};
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::is_run;
 use knotdock::output::files::seal::{REPORT, is_sealed};
 use knotdock::output::files::staging::put_back;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::threads;
-use serde_json::{Value, json};
-
-use crate::arguments::viewer::ViewerArguments;
-use crate::inputs::bodies::Bodies;
-use crate::messages::console::Console;
-use crate::messages::leftovers::warn_leftovers;
 use knotdock_structures::Error;
 
 /// Write report.html of runs, batches, ensembles and sweeps: results as a table, in three dimensions and in charts.
@@ -39,7 +37,6 @@ pub struct Report {
 }
 
 impl Report {
-    /// Writes the reports.
     pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.write(console))?
     }
@@ -58,7 +55,7 @@ impl Report {
                 );
             }
             let text = page(run, viewer.as_ref())?;
-            warn_leftovers(&place(run, &text, self.force)?, console);
+            console.warn_leftovers(&place(run, &text, self.force)?);
             console.say(path.display().to_string());
             written.push(path.display().to_string());
         }
@@ -67,7 +64,7 @@ impl Report {
 }
 
 /// Writes the report of a batch into its directory. One that someone has changed stays.
-pub fn write_listed(directory: &Path, console: Console) -> Result<(), Error> {
+pub fn write_batch_report(directory: &Path, console: Console) -> Result<(), Error> {
     let path = directory.join(REPORT);
     if path.symlink_metadata().is_ok() && !is_sealed(&path) {
         console.warn(format!(
@@ -76,7 +73,7 @@ pub fn write_listed(directory: &Path, console: Console) -> Result<(), Error> {
         ));
         return Ok(());
     }
-    warn_leftovers(&place(directory, &page(directory, None)?, true)?, console);
+    console.warn_leftovers(&place(directory, &page(directory, None)?, true)?);
     Ok(())
 }
 
@@ -90,29 +87,25 @@ fn place(directory: &Path, text: &str, force: bool) -> Result<Vec<PathBuf>, Erro
     Ok(leftovers)
 }
 
-/// The page of a directory.
 fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Error> {
     let name = directory.display().to_string();
-    if let Some(listed) = Listed::in_directory(directory) {
-        return listed.report(directory, directory, &name);
+    if let Some(kind) = DirectoryKind::of(directory) {
+        return kind.report(directory, directory, &name);
     }
     let record_path = directory.join("run.json");
     let run = RecordedRun::read(&record_path)?;
-    let record = value(&record_path)?;
+    let record = serde_json::from_slice(&read_record(&record_path)?)
+        .map_err(|error| Error::input(error).at(&record_path))?;
     let table = PoseTable::read(&directory.join("poses.csv"))?;
-    let bodies = Bodies::recorded([&run.receptor, &run.ligand], &record_path, &run.options)?;
+    let bodies = Bodies::recorded(run.inputs.pair(), &record_path, &run.options)?;
     let contacts = bodies.contacts(&table, &run.options);
     let report = RunReport {
         record: &record,
         options: &run.options,
         table: &table,
-        bodies: bodies.shown(contacts.as_ref()),
+        bodies: bodies.placed(),
+        contacts: contacts.as_ref(),
         directory: &name,
     };
     Ok(report.text(viewer))
-}
-
-/// A record as JSON.
-fn value(path: &Path) -> Result<Value, Error> {
-    serde_json::from_slice(&read_record(path)?).map_err(|error| Error::input(error).at(path))
 }

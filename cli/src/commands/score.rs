@@ -1,8 +1,19 @@
 //! `knotdock score`: one pose, exactly and from ever more modes.
 
+use clap::{Args, ValueEnum};
+use serde_json::{Value, json};
+
+use crate::arguments::machine::default_limit;
+use crate::arguments::options::{GivenOptions, OfScore, OptionArguments};
+use crate::inputs::bodies::{Bodies, sampled, spec_of};
+use crate::inputs::checks::refuse_traces;
+use crate::inputs::molecules::Input;
+use crate::inputs::poses::pose;
+use crate::inputs::solids::is_shape;
+use crate::messages::console::Console;
+use crate::messages::dock::{known_text, regions_text, site_text};
 use crate::records::joined;
 use crate::tables::report;
-use clap::{Args, ValueEnum};
 use knotdock::dock::scene::Scene;
 use knotdock::options::DockOptions;
 use knotdock::options::values::{AT_LEAST_ONE, in_range};
@@ -13,18 +24,6 @@ use knotdock::threads;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{TermValues, Workspace};
 use knotdock_scoring::transform::truncation::ModeOrder;
-use serde_json::{Value, json};
-
-use crate::arguments::memory;
-use crate::arguments::options::{GivenOptions, OfScore, OptionArguments};
-use crate::inputs::bodies::{Bodies, spec_of};
-use crate::inputs::molecules::Input;
-use crate::inputs::poses::pose;
-use crate::inputs::request::lengths;
-use crate::inputs::shapes::is_shape;
-use crate::inputs::traces::refuse_traces;
-use crate::messages::console::Console;
-use crate::messages::dock::{known_text, regions_text, site_text};
 use knotdock_structures::Error;
 
 /// Score one pose: the exact sum, and what m of its Fourier modes give, with the error and the time of each.
@@ -63,7 +62,6 @@ enum Order {
 }
 
 impl Score {
-    /// Scores.
     pub fn run(self, console: Console) -> Result<(), Error> {
         let pose = pose(&self.pose)?;
         let given = self.options.given()?;
@@ -80,7 +78,6 @@ impl Score {
         })?
     }
 
-    /// Options of the ladder.
     fn ladder(&self, dock: &DockOptions) -> ScoreOptions {
         ScoreOptions {
             engine: dock.kernel.engine(),
@@ -89,7 +86,7 @@ impl Score {
                 Order::LowFrequency => ModeOrder::LowFrequency,
                 Order::Magnitude => ModeOrder::Magnitude,
             },
-            memory: memory::default_limit(),
+            memory: default_limit(),
         }
     }
 
@@ -100,13 +97,14 @@ impl Score {
         given: GivenOptions,
         console: Console,
     ) -> Result<(), Error> {
-        let lengths = lengths(&given);
+        let given_lengths = (&given).into();
         let mut dock = given.options;
         let bodies = Bodies::read(&self.receptor, &self.ligand, &dock)?;
         bodies.describe(Arrangement::Pair, console);
-        let Some(sampling) = bodies.sampling(&mut dock, lengths, console)? else {
+        let Bodies::Meshes(inputs) = &bodies else {
             return Err(Error::input("two meshes are needed"));
         };
+        let sampling = sampled(inputs, &mut dock, given_lengths, console)?;
         let scene = Scene::of_meshes(&sampling.pair, &dock)?;
         let scored = score::score(&scene, pose, &self.ladder(&dock))?;
         console.say(format!("\n{}", ladder_text(&scored, "unit")));
@@ -118,7 +116,6 @@ impl Score {
         console.result(&joined([json!(scored), further]))
     }
 
-    /// Scores on the threads of the caller.
     fn score(&self, pose: &Pose, dock: &DockOptions, console: Console) -> Result<(), Error> {
         let options = self.ladder(dock);
         let reading = dock.input.reading();
@@ -179,14 +176,12 @@ fn pose_terms_text(values: &TermValues) -> Option<String> {
     (!terms.is_empty()).then(|| format!("Pose terms: {terms}"))
 }
 
-/// The seven numbers of a pose.
 fn pose_numbers(pose: &Pose) -> Value {
     let [qw, qx, qy, qz] = pose.quaternion();
     let [tx, ty, tz]: [f64; 3] = pose.translation.into();
     json!([qw, qx, qy, qz, tx, ty, tz])
 }
 
-/// The pose as two solids: buried surface and shared volume.
 fn geometry_text(geometry: &PoseGeometry) -> String {
     format!(
         "Buried surface {:.0} Å² ({:.0} of the receptor, {:.0} of the ligand); shared volume {:.1} Å³ of {:.0} and {:.0}: \
@@ -256,7 +251,7 @@ mod tests {
     use super::*;
     use knotdock_scoring::terms::pose::POSE_TERMS;
 
-    /// Every acting term stands in the line of terms once, by its label.
+    /// Every acting term is in the line of terms once, by its label.
     #[test]
     fn the_line_of_pose_terms_is_that_of_the_registry() {
         assert_eq!(pose_terms_text(&TermValues::default()), None);

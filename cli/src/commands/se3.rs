@@ -1,18 +1,16 @@
 //! `knotdock se3`: distance and geodesics of poses, and sets of tolerated ones.
 
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
-use crate::tables::pose_list::write_list;
 use clap::{Args, Subcommand};
-use knotdock::geometry::motion::geodesic_ball;
-use knotdock::geometry::motion::{angle, distance, path};
-use knotdock::options::values::{AT_LEAST_ONE, DISTANCE, in_range};
-use knotdock_scoring::se3::Pose;
 use serde_json::json;
 
-use crate::arguments::output_file::check_output;
-use crate::inputs::poses::pose;
+use crate::arguments::output_file::check_outputs;
+use crate::inputs::poses::{pose, write_list};
 use crate::messages::console::Console;
+use knotdock::geometry::motion::{angle, distance, geodesic_ball, path};
+use knotdock::options::values::{AT_LEAST_ONE, DISTANCE, in_range};
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 
 /// Measure and sample rigid motions: distance, geodesics, geodesic balls as sets of tolerance.
@@ -76,7 +74,6 @@ struct PoseOutput {
     force: bool,
 }
 
-/// Most poses that are written.
 const MAX_POSES: usize = 10_000_000;
 
 impl PoseOutput {
@@ -97,17 +94,11 @@ impl PoseOutput {
                     .help(format!("take at most {MAX_POSES}")),
             );
         }
-        check_output(
-            &self.output,
-            std::iter::empty::<&Path>(),
-            self.force,
-            console,
-        )
+        check_outputs([&self.output], &[], self.force, console)
     }
 }
 
 impl Se3 {
-    /// Runs the command.
     pub fn run(self, console: Console) -> Result<(), Error> {
         match &self.operation {
             Operation::Distance { first, second } => {

@@ -2,30 +2,31 @@
 
 use std::path::PathBuf;
 
-use crate::records::tradeoff::{TradeoffParts, record, write_table};
-use crate::report::Listed;
+use clap::Args;
+use serde_json::json;
+
+use crate::arguments::machine::settled;
+use crate::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
+use crate::inputs::bodies::Bodies;
+use crate::inputs::native::NativeArguments;
+use crate::inputs::request::{Known, Request};
+use crate::messages::console::Console;
+use crate::records::joined;
+use crate::records::tradeoff::{SCHEMA, settings, write_table};
+use crate::report::DirectoryKind;
 use crate::tables::report::text_table;
 use crate::tradeoff::advice::advice;
 use crate::tradeoff::plot::plot;
-use crate::tradeoff::{Measured, Parameter, Refused, Setting, SweepProgress, Tradeoff, sweep};
-use clap::Args;
+use crate::tradeoff::{Measured, Parameter, Tradeoff, sweep};
 use knotdock::options::EngineChoice;
 use knotdock::options::definition::Scope;
 use knotdock::output::files::own_files::TRADEOFF;
 use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::Staging;
 use knotdock::output::files::whole_file::to_json;
-use knotdock::progress::{Ended, Progress};
-use knotdock::threads;
-use serde_json::json;
-
-use crate::arguments::machine::settled;
-use crate::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
-use crate::inputs::native::NativeArguments;
-use crate::inputs::request::{Known, Request};
-use crate::messages::console::{Console, ProgressLine};
-use crate::messages::leftovers::warn_leftovers;
+use knotdock::output::records::program::Program;
 use knotdock::output::run_folder::machine;
+use knotdock::threads;
 use knotdock_structures::Error;
 
 /// Measure what accuracy costs in time: docks a pair with each parameter moved by itself around the options given,
@@ -63,7 +64,6 @@ fn parameters_help() -> String {
 }
 
 impl TradeoffCommand {
-    /// Sweeps.
     pub fn run(self, console: Console) -> Result<(), Error> {
         let mut given = self.options.given()?;
         given.options.machine = settled(&given.options.machine);
@@ -76,10 +76,10 @@ impl TradeoffCommand {
         })?
     }
 
-    /// Sweeps on the threads of the caller.
     fn sweep(self, given: GivenOptions, console: Console) -> Result<(), Error> {
-        let pair = [&self.receptor, &self.ligand];
-        let mut request = Request::read(pair, self.native.read()?, given)?;
+        let native = self.native.read()?;
+        let bodies = Bodies::read(&self.receptor, &self.ligand, &given.options)?;
+        let mut request = Request::of(bodies, native, given);
         check(&request, self.parameters.as_deref().unwrap_or_default())?;
         let parameters = self.parameters.unwrap_or_else(Parameter::all);
         let directory = self.output.unwrap_or_else(|| {
@@ -93,38 +93,44 @@ impl TradeoffCommand {
         let machine = machine(&first.plan);
         let inputs = request.inputs(first.sampling.as_deref())?;
         let opened = Staging::open(TRADEOFF, &directory, self.force)?;
-        warn_leftovers(&opened.leftovers, console);
+        console.warn_leftovers(&opened.leftovers);
         let staging = opened.stage();
-        let progress = SweepConsole {
-            line: console.progress(),
-            console,
-        };
         let tradeoff = sweep(
             request.bodies.pair(),
             first,
             &request.options,
             &parameters,
             known.as_ref().and_then(Known::evaluator),
-            &progress,
+            console,
         )?;
-        drop(progress);
 
         let advice = advice(&tradeoff);
         let svg = plot(&tradeoff)?;
         staging.write("tradeoff.svg", |file| file.write_all(svg.as_bytes()))?;
         staging.write("tradeoff.csv", |file| write_table(&tradeoff, file))?;
-        let record = record(&TradeoffParts {
-            inputs: &inputs,
-            options: &request.options,
-            tradeoff: &tradeoff,
-            advice: advice.as_ref(),
-            matching: known.as_ref().map(Known::entry).transpose()?,
-            files: staging.checksums()?,
-            machine,
-        });
+        let mut options = json!(request.options);
+        // A sweep writes no run.
+        if let Some(options) = options.as_object_mut() {
+            options.remove("output");
+        }
+        let record = joined([
+            json!({ "schema": SCHEMA }),
+            json!(Program::this()),
+            json!({
+                "inputs": inputs,
+                "options": options,
+                "agreement_radius": tradeoff.radius,
+                "settings": settings(&tradeoff),
+                "refused": tradeoff.refused,
+                "advice": advice,
+                "files": staging.checksums()?,
+                "match": known.as_ref().map(Known::entry).transpose()?,
+                "machine": machine,
+            }),
+        ]);
         staging.write("tradeoff.json", |file| to_json(file, &record))?;
         let name = directory.display().to_string();
-        let text = Listed::Tradeoff.report(&directory, staging.folder(), &name)?;
+        let text = DirectoryKind::Tradeoff.report(&directory, staging.folder(), &name)?;
         staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
         opened.commit()?;
 
@@ -202,64 +208,4 @@ fn table(tradeoff: &Tradeoff) -> String {
         line
     });
     text_table(&format!("{header}{of_native}"), lines)
-}
-
-/// Lines on how far the sweep is, and the bar of the search that runs.
-struct SweepConsole<'a> {
-    line: ProgressLine<'a>,
-    console: Console<'a>,
-}
-
-impl Progress for SweepConsole<'_> {
-    fn stage(&self, name: &str, total: u64) {
-        self.line.stage(name, total);
-    }
-
-    fn advance(&self, by: u64) {
-        self.line.advance(by);
-    }
-
-    fn go_on(&self) -> Result<(), Ended> {
-        self.line.go_on()
-    }
-}
-
-impl SweepProgress for SweepConsole<'_> {
-    fn begins(&self, settings: usize, seconds: f64) {
-        self.line.clear();
-        self.console.say(format!(
-            "{settings} settings, in about {seconds:.0} s all together"
-        ));
-    }
-
-    fn runs(&self, number: usize, setting: &Setting) {
-        self.line.clear();
-        let text = match setting.parameter {
-            Parameter::Default => setting.name.clone(),
-            Parameter::Reference | Parameter::Repeat | Parameter::Combination => {
-                format!("{}: {}", setting.name, setting.arguments)
-            }
-            _ => setting.arguments.clone(),
-        };
-        self.console.say(format!("{number}: {text}"));
-    }
-
-    fn ran(&self, measured: &Measured) {
-        self.line.clear();
-        self.console.say(format!(
-            "   {}: {:.1} s, error {:.1e}, agreement {:.2}",
-            measured.setting.name,
-            measured.wall_seconds(),
-            measured.error.rms,
-            measured.agreement
-        ));
-    }
-
-    fn refused(&self, refused: &Refused) {
-        self.line.clear();
-        self.console.warn(format!(
-            "{} is left out: {}",
-            refused.setting, refused.reason
-        ));
-    }
 }

@@ -1,26 +1,23 @@
 //! Conformations as read: each aligned with the first of its side.
 
+use serde_json::{Value, json};
+
+use crate::inputs::bodies::Bodies;
+use crate::inputs::conformations::Conformation;
+use crate::inputs::molecules::Input;
 use crate::records::joined;
 use knotdock::dock::run::molecule_points;
 use knotdock::evaluate::{Superposed, superpose};
 use knotdock::options::DockOptions;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::molecule::{InputSpec, Molecule};
-use serde_json::{Value, json};
-
-use crate::inputs::bodies::Bodies;
-use crate::inputs::conformations::Conformation;
-use crate::inputs::molecules::Input;
 use knotdock_structures::Error;
+use knotdock_structures::molecule::{InputSpec, Molecule};
 
 /// A conformation aligned with the first of its side.
 pub struct AlignedConformation {
-    /// Its name in tables.
     pub name: String,
-    /// Its file and parts.
     pub spec: InputSpec,
-    /// Its file.
     record: InputRecord,
     /// Its place on the first.
     pub place: Superposed,
@@ -41,8 +38,7 @@ impl AlignedConformation {
         })
     }
 
-    /// The entry of ensemble.json: the file, the motion to the frame of the first conformation (qw, qx, qy, qz, and tx,
-    /// ty, tz in Å), the backbone RMSD from the first in Å, and the residues shared with it.
+    /// The entry of ensemble.json: the file, the motion onto the first conformation, and the RMSD from it.
     pub fn record(&self) -> Value {
         let Pose { translation, .. } = self.place.motion;
         let [w, x, y, z] = self.place.motion.quaternion();
@@ -57,7 +53,6 @@ impl AlignedConformation {
         ])
     }
 
-    /// Its description in a line.
     pub fn line(&self) -> String {
         let model = self.spec.model;
         format!(
@@ -81,9 +76,6 @@ pub struct AlignedSides {
 
 impl AlignedSides {
     /// Reads all conformations as they will be read for docking, and aligns each with the first of its side.
-    ///
-    /// # Errors
-    /// [`Error`] if one cannot be read or is another molecule.
     pub fn read(sides: &[Vec<Conformation>; 2], options: &DockOptions) -> Result<Self, Error> {
         let pair = |receptor: &Conformation, ligand: &Conformation| {
             read_pair([&receptor.spec, &ligand.spec], options)
@@ -112,7 +104,6 @@ impl AlignedSides {
     }
 }
 
-/// The molecules of a pair.
 fn read_pair(specs: [&InputSpec; 2], options: &DockOptions) -> Result<Box<[Input; 2]>, Error> {
     match Bodies::of(specs.map(InputSpec::clone), options)? {
         Bodies::Molecules(inputs) => Ok(inputs),

@@ -2,13 +2,11 @@
 
 use std::path::{Path, PathBuf};
 
-use crate::records::ensemble_record::{MEMBERS, is_ensemble};
+use crate::records::{MEMBERS, is_ensemble};
 use knotdock::ensemble::table::MEMBER;
 use knotdock::output::tables::poses::PoseTable;
-
 use knotdock_structures::Error;
 
-/// A run, and its rows of a table.
 pub struct RunRows {
     /// Path of its run.json.
     pub run: PathBuf,
@@ -16,11 +14,7 @@ pub struct RunRows {
     pub rows: Vec<usize>,
 }
 
-/// The runs that some rows of the table of a directory belong to: one run, or members of an ensemble in the order in
-/// which the rows name them.
-///
-/// # Errors
-/// [`Error`] if a row of an ensemble names no member.
+/// The runs of some rows of a directory's table: one run, or members of an ensemble in the order of the rows.
 pub fn runs(directory: &Path, table: &PoseTable, rows: &[usize]) -> Result<Vec<RunRows>, Error> {
     if !is_ensemble(directory) {
         let run = directory.join("run.json");

@@ -2,8 +2,7 @@
 
 mod aligned;
 pub mod finished;
-mod place;
 mod results;
 mod run;
 
-pub use run::Ensemble;
+pub use run::{Ensemble, EnsembleRequest};

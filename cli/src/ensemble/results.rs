@@ -2,9 +2,14 @@
 
 use std::path::Path;
 
-use crate::records::ensemble_record::{RECORD, SCHEMA};
-use crate::records::joined;
-use crate::report::Listed;
+use serde_json::{Value, json};
+
+use crate::ensemble::aligned::AlignedConformation;
+use crate::ensemble::run::{DockedMembers, Ensemble, Place};
+use crate::inputs::bodies::Bodies;
+use crate::messages::console::Console;
+use crate::records::{ENSEMBLE_RECORD, ENSEMBLE_SCHEMA, joined};
+use crate::report::DirectoryKind;
 use crate::tables::report::{BEST, best_rows, counted};
 use knotdock::ensemble::table::JointTable;
 use knotdock::output::files::own_files::MEMBERS;
@@ -13,16 +18,9 @@ use knotdock::output::files::staging::Stage;
 use knotdock::output::files::viewers::ViewedComplex;
 use knotdock::output::files::whole_file::to_json;
 use knotdock::output::records::program::Program;
+use knotdock::output::run_folder::write_scripts;
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
-use serde_json::{Value, json};
-
-use crate::ensemble::aligned::AlignedConformation;
-use crate::ensemble::place::Place;
-use crate::ensemble::run::{DockedMembers, Ensemble};
-use crate::inputs::bodies::Bodies;
-use crate::messages::console::Console;
-use knotdock::output::run_folder::write_scripts;
 use knotdock_structures::Error;
 
 impl Ensemble {
@@ -39,21 +37,22 @@ impl Ensemble {
         let viewed = self.write_top(joint, &staging.folder().join("top"))?;
         write_scripts(staging, &viewed)?;
         let record = self.record(joint, docked, staging)?;
-        staging.write(RECORD, |file| to_json(file, &record))?;
-        if !self.given.options.output.no_report {
-            let name = self.directory.display().to_string();
-            let text = Listed::Ensemble.report(&self.directory, staging.folder(), &name)?;
+        staging.write(ENSEMBLE_RECORD, |file| to_json(file, &record))?;
+        if !self.request.given.options.output.no_report {
+            let name = self.request.directory.display().to_string();
+            let text =
+                DirectoryKind::Ensemble.report(&self.request.directory, staging.folder(), &name)?;
             staging.write(REPORT, |file| file.write_all(text.as_bytes()))?;
         }
         place.commit()?;
         self.report(joint, console);
-        let top = self.directory.join("top");
+        let top = self.request.directory.join("top");
         let complexes = viewed
             .iter()
             .map(|complex| top.join(&complex.file).display().to_string());
         Ok(json!({
-            "directory": self.directory.display().to_string(),
-            "poses": self.directory.join("poses.csv").display().to_string(),
+            "directory": self.request.directory.display().to_string(),
+            "poses": self.request.directory.join("poses.csv").display().to_string(),
             "complexes": complexes.collect::<Vec<_>>(),
             "best": joint.table.objects(joint.firsts().into_iter().take(BEST)),
             "ensemble": record,
@@ -63,7 +62,7 @@ impl Ensemble {
     /// Writes the complexes of the first ranks, each of its member's conformations, in the order of the ranks.
     fn write_top(&self, joint: &JointTable, folder: &Path) -> Result<Vec<ViewedComplex>, Error> {
         let rows = joint.table.rows();
-        let count = self.given.options.output.write_top.min(rows.len());
+        let count = self.request.given.options.output.write_top.min(rows.len());
         let mut viewed = Vec::new();
         for (index, member) in self.members().into_iter().enumerate() {
             let own = (0..count).filter(|&row| joint.members[row] == index);
@@ -72,7 +71,7 @@ impl Ensemble {
                 continue;
             }
             let specs = self.conformations(member).map(|laid| laid.spec.clone());
-            let bodies = Bodies::of(specs, &self.given.options)?;
+            let bodies = Bodies::of(specs, &self.request.given.options)?;
             let written = bodies
                 .placed()
                 .write(&own, Arrangement::Pair, (folder, None))?;
@@ -84,8 +83,7 @@ impl Ensemble {
         Ok(viewed)
     }
 
-    /// ensemble.json. Everything outside `timing` and `command` is the same, byte for byte, for the same input, options
-    /// and CPU feature level.
+    /// ensemble.json. All but `timing` and `command` is the same for the same input, options and CPU feature level.
     fn record(
         &self,
         joint: &JointTable,
@@ -112,12 +110,12 @@ impl Ensemble {
         };
         let command = std::env::args_os().map(|word| word.to_string_lossy().into_owned());
         Ok(joined([
-            json!({ "schema": SCHEMA }),
+            json!({ "schema": ENSEMBLE_SCHEMA }),
             json!(Program::this()),
             json!({
                 "receptor": conformations(receptor),
                 "ligand": conformations(ligand),
-                "options": self.given.options,
+                "options": self.request.given.options,
                 "members": members.collect::<Vec<_>>(),
                 "results": {
                     "rows": joint.table.rows().len(),
@@ -135,7 +133,6 @@ impl Ensemble {
         ]))
     }
 
-    /// Reports the joint ranking.
     fn report(&self, joint: &JointTable, console: Console) {
         console.say(format!(
             "\n{}\n\nAll {} together (rec and lig are the conformations): {} in {:.1} s",
@@ -144,7 +141,7 @@ impl Ensemble {
             counted(joint.clusters, "cluster"),
             self.clock.seconds(),
         ));
-        let directory = self.directory.display();
+        let directory = self.request.directory.display();
         console.say(format!(
             "Effects, errors and times of each are in {directory}/{MEMBERS}/*/run.json"
         ));
@@ -152,7 +149,7 @@ impl Ensemble {
             "{} in {directory}/poses.csv",
             counted(joint.table.rows().len(), "row"),
         ));
-        if !self.given.options.output.no_report {
+        if !self.request.given.options.output.no_report {
             console.say(format!(
                 "  open {directory}/{REPORT}  look at them in a browser"
             ));

@@ -3,46 +3,50 @@
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-use crate::records::ensemble_record::RECORD;
-use crate::tables::batch_results::RunSummary;
-use crate::tables::report::counted;
-use crate::tradeoff::choice::Wanted;
-use knotdock::ensemble::table::{DockedMember, joint};
-use knotdock::output::files::own_files::MEMBERS;
-use knotdock::output::tables::poses::PoseTable;
-use knotdock::rank::cluster::RigidBody;
 use serde_json::Value;
 
 use crate::arguments::options::GivenOptions;
 use crate::docking::{Docking, held_by_another};
 use crate::ensemble::aligned::{AlignedConformation, AlignedSides};
-use crate::ensemble::place::Place;
 use crate::inputs::bodies::Bodies;
 use crate::inputs::conformations::Conformation;
 use crate::inputs::native::NativeFiles;
 use crate::inputs::request::Request;
-use crate::messages::brief::time_text;
 use crate::messages::console::Console;
-use crate::messages::leftovers::warn_leftovers;
+use crate::messages::dock::time_text;
+use crate::records::ENSEMBLE_RECORD;
+use crate::tables::batch_results::RunSummary;
+use crate::tables::report::counted;
+use crate::tradeoff::choice::Wanted;
+use knotdock::ensemble::table::{DockedMember, joint};
+use knotdock::output::files::added::Addition;
+use knotdock::output::files::own_files::{ENSEMBLE, MEMBERS, is_run};
+use knotdock::output::files::staging::{Stage, Staging};
 use knotdock::output::run_folder::Clock;
+use knotdock::output::tables::poses::PoseTable;
+use knotdock::rank::cluster::RigidBody;
 use knotdock_structures::Error;
 
 /// Conformations of two molecules, each pair of which is docked.
 pub struct Ensemble {
     pub(super) aligned: AlignedSides,
-    pub(super) given: GivenOptions,
-    native: Option<NativeFiles>,
-    wanted: Wanted,
-    pub(super) directory: PathBuf,
-    force: bool,
+    pub(super) request: EnsembleRequest,
     pub(super) clock: Clock,
     pub(super) expected_seconds: f64,
+}
+
+/// How the pairs of an ensemble are docked, and into which directory.
+pub struct EnsembleRequest {
+    pub given: GivenOptions,
+    pub native: Option<NativeFiles>,
+    pub wanted: Wanted,
+    pub directory: PathBuf,
+    pub force: bool,
 }
 
 /// The members of an ensemble after docking.
 #[derive(Default)]
 pub(super) struct DockedMembers {
-    /// Their tables.
     pub members: Vec<DockedMember>,
     /// Poses that they kept.
     pub poses: u64,
@@ -56,30 +60,22 @@ pub(super) struct Member([usize; 2]);
 
 impl Ensemble {
     /// Reads all conformations, plans the largest pair and reports the expected cost.
-    ///
-    /// # Errors
-    /// [`Error`] if a conformation cannot be used, or if memory does not suffice for the largest pair.
     pub fn prepare(
         sides: &[Vec<Conformation>; 2],
-        (given, native, wanted): (GivenOptions, Option<NativeFiles>, Wanted),
-        (directory, force): (PathBuf, bool),
+        request: EnsembleRequest,
         clock: Clock,
         console: Console,
     ) -> Result<Self, Error> {
-        if given.options.search.symmetry.is_some() {
+        if request.given.options.search.symmetry.is_some() {
             return Err(
                 Error::input("--symmetry docks one conformation, and several are given")
-                    .help("dock each conformation in a run of its own"),
+                    .help("dock each conformation in its own run"),
             );
         }
-        let aligned = AlignedSides::read(sides, &given.options)?;
+        let aligned = AlignedSides::read(sides, &request.given.options)?;
         let mut ensemble = Self {
             aligned,
-            given,
-            native,
-            wanted,
-            directory,
-            force,
+            request,
             clock,
             expected_seconds: 0.0,
         };
@@ -115,18 +111,25 @@ impl Ensemble {
 
     /// Plans a member's run, for the folder that it will have in the end.
     fn planned(&self, member: Member, console: Console) -> Result<Docking, Error> {
-        let folder = self.directory.join(MEMBERS).join(self.name(member));
+        let folder = self.request.directory.join(MEMBERS).join(self.name(member));
         self.docking(member, folder, console)
     }
 
     /// Plans a member's run into a folder.
     fn docking(&self, member: Member, folder: PathBuf, console: Console) -> Result<Docking, Error> {
-        let specs = self.conformations(member).map(|laid| laid.spec.clone());
-        let bodies = Bodies::of(specs, &self.given.options)?;
-        let request = Request::of(bodies, self.native.clone(), self.given.clone());
-        let place = (folder, self.force);
-        let mut docking = Docking::prepare(request, self.wanted, place, Clock::start(), console)?;
-        docking.shown = self.directory.join(MEMBERS).join(self.name(member));
+        let EnsembleRequest {
+            given,
+            native,
+            wanted,
+            directory,
+            force,
+        } = &self.request;
+        let specs = self.conformations(member).map(|one| one.spec.clone());
+        let bodies = Bodies::of(specs, &given.options)?;
+        let request = Request::of(bodies, native.clone(), given.clone());
+        let place = (folder, *force);
+        let mut docking = Docking::prepare(request, *wanted, place, Clock::start(), console)?;
+        docking.shown = directory.join(MEMBERS).join(self.name(member));
         Ok(docking)
     }
 
@@ -134,12 +137,8 @@ impl Ensemble {
     fn foresee(&self, console: Console) -> Result<f64, Error> {
         let first = self.planned(Member([0, 0]), console)?;
         let largest = Member(self.aligned.sides.each_ref().map(|side| largest(side)));
-        let bytes = match largest.0 {
-            [0, 0] => first.memory_bytes(),
-            _ => first
-                .memory_bytes()
-                .max(self.planned(largest, console.silent())?.memory_bytes()),
-        };
+        let largest = self.planned(largest, console.silent())?;
+        let bytes = first.memory_bytes().max(largest.memory_bytes());
         let count = self.members().len();
         let each = first.expected_seconds();
         let seconds = each * count as f64;
@@ -158,8 +157,8 @@ impl Ensemble {
 
     /// The directory, or that of a member, if it holds results of something else that are not to be replaced.
     pub fn in_the_way(&self) -> Option<&Path> {
-        let record = !self.force && self.directory.join(RECORD).exists();
-        record.then_some(self.directory.as_path())
+        let record = !self.request.force && self.request.directory.join(ENSEMBLE_RECORD).exists();
+        record.then_some(self.request.directory.as_path())
     }
 
     /// Whether the directory holds this very ensemble already.
@@ -168,21 +167,18 @@ impl Ensemble {
             let docking = self.planned(member, console.silent());
             docking.is_ok_and(|docking| docking.is_done())
         };
-        let recorded = recorded_members(&self.directory.join(RECORD));
-        let names: Vec<String> = self
-            .members()
-            .into_iter()
-            .map(|one| self.name(one))
-            .collect();
+        let recorded = recorded_members(&self.request.directory.join(ENSEMBLE_RECORD));
+        let members = self.members();
+        let names: Vec<String> = members.iter().map(|&member| self.name(member)).collect();
         recorded == Some(names)
-            && self.directory.join("poses.csv").is_file()
-            && self.members().into_iter().all(is_done)
+            && self.request.directory.join("poses.csv").is_file()
+            && members.into_iter().all(is_done)
     }
 
     /// Docks the missing members, and writes the joint results; their JSON object.
     pub fn run(self, console: Console, notices: Console) -> Result<Value, Error> {
-        let place = Place::open(&self.directory, self.force)?;
-        warn_leftovers(place.leftovers(), notices);
+        let place = Place::open(&self.request.directory, self.request.force)?;
+        notices.warn_leftovers(place.leftovers());
         let members = self.members();
         let mut docked = DockedMembers::default();
         for (&member, number) in members.iter().zip(1..) {
@@ -207,14 +203,10 @@ impl Ensemble {
                 path,
             });
         }
-        let ranking = &self.given.options.ranking;
+        let ranking = &self.request.given.options.ranking;
+        let (radius, no_cluster) = (ranking.cluster_radius, ranking.no_cluster);
         let body = RigidBody::new(&self.aligned.points);
-        let joint = joint(
-            &docked.members,
-            &body,
-            ranking.cluster_radius,
-            ranking.no_cluster,
-        )?;
+        let joint = joint(&docked.members, &body, radius, no_cluster)?;
         self.write(&joint, &docked, place, console)
     }
 
@@ -252,4 +244,72 @@ fn largest(side: &[AlignedConformation]) -> usize {
     let by_radius =
         |&a: &usize, &b: &usize| side[a].radius.total_cmp(&side[b].radius).then(b.cmp(&a));
     places.max_by(by_radius).unwrap_or(0)
+}
+
+/// Names in the directory of an unfinished ensemble.
+const UNFINISHED: [&str; 6] = [
+    MEMBERS,
+    "poses.csv",
+    "top",
+    "view.pml",
+    "view.cxc",
+    "report.html",
+];
+
+/// The place that an ensemble is written to.
+pub(super) enum Place {
+    /// In its directory.
+    New(PathBuf, Box<Addition>),
+    /// Beside it.
+    Replacing(Box<Staging>),
+}
+
+impl Place {
+    /// The place of an ensemble in a directory: beside it if it holds another run and `force` is true.
+    pub fn open(directory: &Path, force: bool) -> Result<Self, Error> {
+        let is_unfinished = match std::fs::read_dir(directory) {
+            Ok(entries) => entries.flatten().all(|entry| {
+                let name = entry.file_name();
+                UNFINISHED.iter().any(|part| name == *part)
+            }),
+            Err(_) => true,
+        };
+        if is_unfinished && !is_run(directory) {
+            let addition = Addition::open(directory, Some(directory))?;
+            return Ok(Self::New(directory.to_owned(), Box::new(addition)));
+        }
+        let staging = Staging::open(ENSEMBLE, directory, force)?;
+        Ok(Self::Replacing(Box::new(staging)))
+    }
+
+    pub fn leftovers(&self) -> &[PathBuf] {
+        match self {
+            Self::New(_, addition) => &addition.leftovers,
+            Self::Replacing(staging) => &staging.leftovers,
+        }
+    }
+
+    pub fn member(&self, name: &str) -> PathBuf {
+        let folder = match self {
+            Self::New(directory, _) => directory,
+            Self::Replacing(staging) => staging.stage().folder(),
+        };
+        folder.join(MEMBERS).join(name)
+    }
+
+    pub fn stage(&self) -> &Stage {
+        match self {
+            Self::New(_, addition) => addition.stage(),
+            Self::Replacing(staging) => staging.stage(),
+        }
+    }
+
+    /// Puts the joint files into their place.
+    pub fn commit(self) -> Result<(), Error> {
+        match self {
+            Self::New(_, addition) => addition.place(false)?,
+            Self::Replacing(staging) => staging.commit()?,
+        }
+        Ok(())
+    }
 }

@@ -1,29 +1,27 @@
-//! The two bodies of a run: molecules or meshes, and what differs between them.
+//! The two bodies of a run: molecules or meshes, and their differences.
 
-use knotdock::dock::scene::ring_axis;
-use knotdock::output::run_folder;
 use std::path::Path;
 use std::sync::Arc;
 
-use crate::report::{ReportBodies, RunContacts};
-use knotdock::dock::pair::{GivenLengths, Pair, PreparedPair, Sampling, sampled_defaults};
-use knotdock::mesh::{MeshOptions, MeshPair, MeshSceneError};
+use crate::inputs::checks::{refuse_traces, room_to_read, room_to_sample};
+use crate::inputs::molecules::{Input, folders_of, label};
+use crate::inputs::request::GivenMeshOptions;
+use crate::inputs::solids::{ShapeInput, ball_file_of, is_shape};
+use crate::messages::console::Console;
+use crate::report::RunContacts;
+use knotdock::dock::pair::{Pair, PreparedPair, Sampling, sampled_defaults};
+use knotdock::dock::scene::ring_axis;
+use knotdock::mesh::{MeshOptions, MeshPair};
 use knotdock::options::DockOptions;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
+use knotdock::output::run_folder;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::InputSpec;
 use knotdock_structures::sampling::weights::FittedWeights;
 
-use crate::inputs::molecules::{Input, folders_of, label};
-use crate::inputs::room::{room_to_read, room_to_sample};
-use crate::inputs::shapes::{ShapeInput, ball_file_of, is_shape};
-use crate::inputs::traces::refuse_traces;
-use crate::messages::console::Console;
-
-/// The bodies as read.
 pub enum Bodies {
     /// Two molecules, which stays first.
     Molecules(Box<[Input; 2]>),
@@ -31,7 +29,6 @@ pub enum Bodies {
     Meshes(Box<[ShapeInput; 2]>),
 }
 
-/// Names of the two sides.
 const SIDES: [&str; 2] = ["Receptor", "Ligand"];
 
 impl Bodies {
@@ -52,17 +49,14 @@ impl Bodies {
         options: &DockOptions,
     ) -> Result<Self, Error> {
         let folders = folders_of(run);
-        let [receptor, ligand] = records;
-        let specs = [
-            receptor.locate(&folders)?.spec(),
-            ligand.locate(&folders)?.spec(),
-        ];
-        Self::whatever(specs, options)
+        let [receptor, ligand] = records.map(|record| record.locate(&folders));
+        let specs = [receptor?.spec(), ligand?.spec()];
+        Self::read_any(specs, options)
     }
 
     /// Reads two bodies of one kind that can be docked.
     pub fn of(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Error> {
-        let bodies = Self::whatever(specs, options)?;
+        let bodies = Self::read_any(specs, options)?;
         if let Self::Molecules(inputs) = &bodies {
             refuse_traces(["receptor", "ligand"].into_iter().zip(inputs.as_ref()))?;
         }
@@ -70,7 +64,7 @@ impl Bodies {
     }
 
     /// Reads two bodies of one kind, of an earlier run what it docked.
-    fn whatever(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Error> {
+    fn read_any(specs: [InputSpec; 2], options: &DockOptions) -> Result<Self, Error> {
         let [receptor, ligand] = &specs;
         let are_meshes = [receptor, ligand].map(|spec| is_shape(&spec.path));
         if are_meshes[0] == are_meshes[1] {
@@ -102,8 +96,7 @@ impl Bodies {
         }
     }
 
-    /// Reports what was read, with warnings; of a ring, the one molecule that it is made of. A line each, or all that is
-    /// known where the console wants details.
+    /// Reports inputs and warnings, for rings of the one molecule: one line each, or with details.
     pub fn describe(&self, arrangement: Arrangement, console: Console) {
         match self {
             Self::Molecules(inputs) => {
@@ -118,19 +111,17 @@ impl Bodies {
             }
             Self::Meshes(inputs) => {
                 for (side, input) in SIDES.into_iter().zip(inputs.as_ref()) {
-                    input.describe(side, console);
+                    input.file.describe(side, console);
                 }
             }
         }
     }
 
-    /// Plans their docking. Options that follow from the meshes are filled in; `given` says which lengths are not
-    /// among these.
+    /// Plans their docking. Options that follow from the meshes are filled in; `given` has those that do not.
     pub fn plan(
         &self,
         options: &mut DockOptions,
-        offset: Option<f64>,
-        given: GivenLengths,
+        given: GivenMeshOptions,
         console: Console,
     ) -> Result<PreparedPair, Error> {
         match self {
@@ -145,26 +136,12 @@ impl Bodies {
             )
             .help("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
-                let sampling = sampled(inputs, options, (offset, given), console)?;
+                let sampling = sampled(inputs, options, given, console)?;
                 PreparedPair::meshes(Arc::new(sampling), options)
             }
         }
     }
 
-    /// Samples meshes, as [`Self::plan`] does; `None` of molecules.
-    pub fn sampling(
-        &self,
-        options: &mut DockOptions,
-        (offset, given): (Option<f64>, GivenLengths),
-        console: Console,
-    ) -> Result<Option<Sampling>, Error> {
-        match self {
-            Self::Molecules(_) => Ok(None),
-            Self::Meshes(inputs) => sampled(inputs, options, (offset, given), console).map(Some),
-        }
-    }
-
-    /// What is docked.
     pub fn pair(&self) -> Pair<'_> {
         match self {
             Self::Molecules(inputs) => {
@@ -174,7 +151,6 @@ impl Bodies {
         }
     }
 
-    /// The bodies as they are written.
     pub fn placed(&self) -> run_folder::Bodies<'_> {
         match self {
             Self::Molecules(inputs) => {
@@ -192,47 +168,27 @@ impl Bodies {
             return None;
         };
         let molecules = inputs.each_ref().map(|input| &input.molecule);
-        let arrangement = Arrangement::from(options.search.symmetry);
-        Some(RunContacts::of(
-            molecules,
-            table,
-            arrangement,
-            options.terms.ph,
-        ))
-    }
-
-    /// What a report shows of them.
-    pub fn shown<'a>(&'a self, contacts: Option<&'a RunContacts<'a>>) -> ReportBodies<'a> {
-        match (self, contacts) {
-            (Self::Molecules(inputs), Some(contacts)) => {
-                let molecules = inputs.each_ref().map(|input| &input.molecule);
-                ReportBodies::Molecules(molecules, contacts)
-            }
-            (Self::Meshes(inputs), _) => {
-                ReportBodies::Solids(inputs.each_ref().map(ShapeInput::surface))
-            }
-            (Self::Molecules(_), None) => unreachable!("molecules come with their contacts"),
-        }
+        let (arrangement, ph) = (options.search.symmetry.into(), options.terms.ph);
+        Some(RunContacts::of(molecules, table, arrangement, ph))
     }
 
     /// Receptor and ligand for run.json.
     pub fn entries(&self, sampling: Option<&Sampling>) -> Result<[InputEntry; 2], Error> {
-        let [receptor, ligand] = match self {
-            Self::Molecules(inputs) => inputs.each_ref().map(Input::entry),
-            Self::Meshes(inputs) => {
-                let [receptor, ligand] = inputs.as_ref();
-                let part = |index: usize| sampling.map(|sampling| &sampling.pair.parts[index]);
-                return Ok([receptor.entry(part(0)), ligand.entry(part(1))]);
+        match self {
+            Self::Molecules(inputs) => {
+                let [receptor, ligand] = inputs.each_ref().map(Input::entry);
+                Ok([receptor?, ligand?])
             }
-        };
-        Ok([receptor?, ligand?])
+            Self::Meshes(inputs) => Ok([0, 1].map(|side| {
+                inputs[side].entry(sampling.map(|sampling| &sampling.pair.parts[side]))
+            })),
+        }
     }
 
-    /// The files of receptor and ligand.
     pub fn records(&self) -> [&InputRecord; 2] {
         match self {
             Self::Molecules(inputs) => inputs.each_ref().map(|input| &input.record),
-            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.record),
+            Self::Meshes(inputs) => inputs.each_ref().map(|input| &input.file.record),
         }
     }
 
@@ -243,7 +199,7 @@ impl Bodies {
     }
 }
 
-/// What a text names: of a file of balls, a link may stand behind a colon.
+/// The file and parts that a text names; for a file of balls, the link after a colon.
 pub fn spec_of(text: &str) -> Result<InputSpec, Error> {
     match ball_file_of(text) {
         Some(spec) => Ok(spec),
@@ -263,33 +219,29 @@ fn say_read(what: &str, input: &Input, console: Console) {
     }
 }
 
-/// Refuses the first option that is given and has no effect on such bodies: what was meant by it would not happen. An
-/// option at its default is no different from one that is not given. Weights of effects that are off are not refused:
-/// they say what the effect would weigh.
+/// Refuses the first option that differs from its default and has no effect on such bodies.
 fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), Error> {
     let Some(option) = options.without_effect(are_meshes) else {
         return Ok(());
     };
-    let (of, these, remedy) = if are_meshes {
-        let remedy = "leave it out: meshes are scored by shape alone";
-        ("molecules", "meshes", remedy)
-    } else {
-        let remedy = "leave it out: the balls of a molecule are its atoms";
-        ("meshes", "molecules", remedy)
-    };
     let long = option.long();
-    Err(Error::input(format!("--{long} is for {of}, and these are {these}")).help(remedy))
+    Err(match are_meshes {
+        true => Error::input(format!("--{long} is for molecules, and these are meshes"))
+            .help("leave it out: meshes are scored by shape alone"),
+        false => Error::input(format!("--{long} is for meshes, and these are molecules"))
+            .help("leave it out: the balls of a molecule are its atoms"),
+    })
 }
 
-/// Meshes as balls. Options that follow from them are filled in, and what was made is said.
-fn sampled(
+/// Meshes as balls. Options that follow from them are filled in, and the sampling is reported.
+pub fn sampled(
     inputs: &[ShapeInput; 2],
     options: &mut DockOptions,
-    (offset, given): (Option<f64>, GivenLengths),
+    GivenMeshOptions { offset, lengths }: GivenMeshOptions,
     console: Console,
 ) -> Result<Sampling, Error> {
     let sampler = *options.sampling.sampler.get_or_insert_default();
-    if !given.alpha {
+    if !lengths.alpha {
         options.kernel.alpha = sampler.alpha();
     }
     let sampling = MeshOptions {
@@ -305,21 +257,16 @@ fn sampled(
     };
     room_to_sample(sampling.per_axis, options.machine.memory)?;
     let solids = inputs.each_ref().map(ShapeInput::shape);
-    let sampling = Sampling::of(solids, &sampling).map_err(|error| mesh_failure(error, inputs))?;
-    sampled_defaults(&sampling.pair, options, given);
+    let sampling = Sampling::of(solids, &sampling).map_err(|error| match error.part {
+        Some(part) => error.error.at(&inputs[part].file.record.path),
+        None => error.error,
+    })?;
+    sampled_defaults(&sampling.pair, options, lengths);
     console.say(match console.verbose {
         true => sampling_text(&sampling.pair),
         false => brief_sampling_text(&sampling.pair),
     });
     Ok(sampling)
-}
-
-/// An error that names the mesh at fault.
-fn mesh_failure(error: MeshSceneError, inputs: &[ShapeInput; 2]) -> Error {
-    match error.part {
-        Some(part) => error.error.at(&inputs[part].record.path),
-        None => error.error,
-    }
 }
 
 /// The sampling of the meshes in a line.

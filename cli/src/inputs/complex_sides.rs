@@ -1,48 +1,43 @@
 //! The two sides of a complex file: as named, as knotdock wrote them, or the two chains that there are.
 
-use crate::messages::failure;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
+use rayon::prelude::*;
+
+use crate::messages::console::{Console, failure_text};
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{
     InputSpec, ModelChoice, Molecule, ReadOptions, file_bytes, model_count, read_bytes,
 };
 
-use rayon::prelude::*;
-
-use crate::messages::console::Console;
-use knotdock_structures::Error;
-
 /// A model of a complex file as two molecules where they stand.
 pub struct ComplexSides {
-    /// The file.
     pub path: PathBuf,
     /// Place of the model in the file, from 1.
     pub model: usize,
     /// Chains of each side, with commas between them.
     pub chains: [String; 2],
-    /// The sides.
     pub molecules: [Molecule; 2],
 }
 
 impl ComplexSides {
     /// Reads a model of a file, with the chains of both sides or without.
-    ///
-    /// # Errors
-    /// [`Error`] for a file that cannot be read, and for one that does not say which chains belong together.
     fn read(
-        file: &ModelOfFile,
+        file: &ModelFile,
+        model: usize,
         chains: Option<&[String; 2]>,
         options: &ReadOptions,
     ) -> Result<Self, Error> {
         let whole = InputSpec {
-            model: file.one_of_several.then_some(file.model),
-            ..InputSpec::whole(file.path)
+            // Of one, the options of reading say what is read.
+            model: (file.models.len() > 1).then_some(model),
+            ..InputSpec::whole(&file.path)
         };
         let chains = match chains {
             Some(chains) => chains.clone(),
-            None => match written_sides(&String::from_utf8_lossy(file.bytes)) {
+            None => match written_sides(&String::from_utf8_lossy(&file.bytes)) {
                 Some(chains) => chains,
-                None => two_chains(&whole, file.bytes.to_vec(), options)?,
+                None => two_chains(&whole, file.bytes.clone(), options)?,
             },
         };
         let side = |names: &String| -> Result<Molecule, Error> {
@@ -50,12 +45,12 @@ impl ComplexSides {
                 chains: Some(names.split(',').map(str::to_owned).collect()),
                 ..whole.clone()
             };
-            read_bytes(&spec, file.bytes.to_vec(), options)
+            read_bytes(&spec, file.bytes.clone(), options)
         };
         let molecules = [side(&chains[0])?, side(&chains[1])?];
         Ok(Self {
             path: whole.path,
-            model: file.model,
+            model,
             chains,
             molecules,
         })
@@ -74,17 +69,7 @@ impl ComplexSides {
     }
 }
 
-/// A model of a file.
-struct ModelOfFile<'a> {
-    path: &'a Path,
-    bytes: &'a [u8],
-    /// Its place in the file, from 1.
-    model: usize,
-    /// Whether it is read by that place; otherwise the options of reading say what is read.
-    one_of_several: bool,
-}
-
-/// A file with its bytes, unpacked once, and the models that are read of it one by one.
+/// A file with its bytes, unpacked once, and the places of the models that are read of it, from 1.
 struct ModelFile {
     path: PathBuf,
     bytes: Vec<u8>,
@@ -111,10 +96,7 @@ impl ModelFile {
     }
 }
 
-/// The files that words name, and the chains of both sides where they stand behind them.
-///
-/// # Errors
-/// [`Error`] where the words name no file, or the chains of one side or of more than two.
+/// The files that words name, and the chains of both sides if they follow.
 pub fn files_and_chains<'a>(
     words: &'a [String],
     command: &str,
@@ -145,37 +127,26 @@ pub fn files_and_chains<'a>(
     Ok((files, chains))
 }
 
-/// What is made of each model of each file, in their order, and the exit code. Warnings of the reader are shown. A model
-/// of which nothing can be made is reported and costs no other.
-///
-/// # Errors
-/// The [`Error`] of a model that is the only one.
+/// Makes something of each model of each file, in order; the exit code. Failures of several models are reported.
 pub fn for_each_model<T: Send>(
     (files, chains): (&[String], Option<&[String; 2]>),
     options: &ReadOptions,
     console: Console,
     make: impl Fn(&str, ComplexSides) -> Result<T, Error> + Sync,
 ) -> Result<(Vec<T>, u8), Error> {
-    type Made<T> = (Vec<String>, Result<T, Error>);
-    let of_model = |name: &str, file: &ModelFile, model: usize| -> Made<T> {
-        let one_of_several = file.models.len() > 1;
-        let place = ModelOfFile {
-            path: &file.path,
-            bytes: &file.bytes,
-            model,
-            one_of_several,
-        };
-        let (warnings, made) = match ComplexSides::read(&place, chains, options) {
+    type ModelResult<T> = (Vec<String>, Result<T, Error>);
+    let of_model = |name: &str, file: &ModelFile, model: usize| -> ModelResult<T> {
+        let (warnings, made) = match ComplexSides::read(file, model, chains, options) {
             Ok(sides) => (sides.warnings(), make(name, sides)),
             Err(failure) => (Vec::new(), Err(failure)),
         };
-        let made = made.map_err(|failure| match one_of_several {
-            true => failure.within(format!("model {model}")),
-            false => failure,
+        let made = made.map_err(|failure| match file.models.len() {
+            1 => failure,
+            _ => failure.within(format!("model {model}")),
         });
         (warnings, made)
     };
-    let of_file = |name: &String| -> Vec<Made<T>> {
+    let of_file = |name: &String| -> Vec<ModelResult<T>> {
         match ModelFile::read(name, options) {
             Ok(file) => {
                 let models = file.models.par_iter();
@@ -184,7 +155,7 @@ pub fn for_each_model<T: Send>(
             Err(failure) => vec![(Vec::new(), Err(failure))],
         }
     };
-    let made: Vec<Vec<Made<T>>> = files.par_iter().map(of_file).collect();
+    let made: Vec<Vec<ModelResult<T>>> = files.par_iter().map(of_file).collect();
     let is_only = made.iter().map(Vec::len).sum::<usize>() == 1;
     let (mut rows, mut code, mut warned) = (Vec::new(), 0, Vec::new());
     for (warnings, one) in made.into_iter().flatten() {
@@ -198,7 +169,7 @@ pub fn for_each_model<T: Send>(
             Ok(row) => rows.push(row),
             Err(failure) if is_only => return Err(failure),
             Err(failure) => {
-                console.error(failure::text(&failure));
+                console.error(failure_text(&failure));
                 code = code.max(failure.exit_code());
             }
         }
@@ -211,8 +182,7 @@ fn is_chains(word: &str) -> bool {
     !word.contains(['.', '/', '\\'])
 }
 
-/// The sides that the remarks of a complex of knotdock name: `chain B is ligand chain I`. Of a ring all copies but the
-/// first are the second side.
+/// Sides by the remarks of a knotdock complex: `chain B is ligand chain I`; of a ring, the first copy and the others.
 fn written_sides(text: &str) -> Option<[String; 2]> {
     let mut sides = [Vec::new(), Vec::new()];
     for line in text.lines() {

@@ -2,26 +2,20 @@
 
 use std::collections::HashSet;
 
+use crate::arguments::conformations::ModelList;
+use crate::inputs::solids::is_shape;
 use knotdock::output::files::whole_file::is_stream;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{InputSpec, file_bytes, model_count};
 
-use crate::arguments::conformations::ModelList;
-use crate::inputs::shapes::is_shape;
-use knotdock_structures::Error;
-
-/// One conformation of a side.
 #[derive(Clone, Debug)]
 pub struct Conformation {
     /// Its name in tables: the number of the model, or of the file, or both as FILE.MODEL.
     pub name: String,
-    /// What is read.
     pub spec: InputSpec,
 }
 
 /// The conformations of a side, the first one first: each file, and of it the models that are listed.
-///
-/// # Errors
-/// [`Error`] for what is no molecule, cannot be read twice, lacks a model, or is named twice.
 pub fn conformations(
     first: &str,
     also: &[String],
@@ -77,7 +71,7 @@ fn check(spec: &InputSpec) -> Result<(), Error> {
     Ok(())
 }
 
-/// The models of a file that are docked; `None` stands for what is read of it by default.
+/// The models of a file that are docked; `None` is the default one.
 fn chosen(spec: &InputSpec, models: Option<&ModelList>) -> Result<Vec<Option<usize>>, Error> {
     let Some(models) = models else {
         return Ok(vec![None]);

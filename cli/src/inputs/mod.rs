@@ -1,16 +1,11 @@
 //! The inputs of a run: files named on the command line, in a table of pairs or in an earlier run's record.
 
 pub mod bodies;
+pub mod checks;
 pub mod complex_sides;
 pub mod conformations;
 pub mod molecules;
 pub mod native;
 pub mod poses;
-pub mod ranked_rows;
-pub mod recent_molecules;
 pub mod request;
-pub mod room;
-pub mod shapes;
-pub mod shared_chains;
 pub mod solids;
-pub mod traces;

@@ -3,20 +3,17 @@
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
-use crate::records::ensemble_record::MEMBERS;
+use crate::inputs::solids::is_mesh;
+use crate::records::MEMBERS;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::{
     AtomFate, DropKind, InputSpec, ModelChoice, Molecule, ReadOptions, file_bytes, read_bytes,
     read_bytes_with_fates,
 };
 
-use crate::inputs::recent_molecules::read_recent;
-use crate::inputs::shapes::is_mesh;
-use knotdock_structures::Error;
-
-/// The folder of a run.json and the one above it, in which inputs are looked for that are no longer where they were; of
-/// a member of an ensemble those of the ensemble as well.
+/// Folders in which moved inputs are searched: of the run and above it; for a member, of its ensemble too.
 pub fn folders_of(run: &Path) -> Vec<PathBuf> {
     // A relative path may not name the one above.
     let run = std::path::absolute(run).unwrap_or_else(|_| run.to_owned());
@@ -30,35 +27,15 @@ pub fn folders_of(run: &Path) -> Vec<PathBuf> {
     folders.map(Path::to_owned).collect()
 }
 
-/// A structure as read.
 #[derive(Clone)]
 pub struct Input {
     /// File, chains and checksum.
     pub record: InputRecord,
-    /// Its atoms, with the report of what was kept, dropped and altered.
+    /// Its atoms, with a report on atoms kept, dropped and altered.
     pub molecule: Molecule,
 }
 
 impl Input {
-    /// Reads `FILE` or `FILE:H,L`.
-    pub fn read(text: &str, options: &ReadOptions) -> Result<Self, Error> {
-        let spec = InputSpec::parse(text)?;
-        refuse_mesh(&spec)?;
-        Self::of(&spec, options)
-    }
-
-    /// Reads what a run recorded, checking that the file is still the same; `run` is the path of its run.json, beside
-    /// or above which inputs are looked for that are no longer where they were.
-    pub fn recorded(
-        record: &InputRecord,
-        run: &Path,
-        options: &ReadOptions,
-    ) -> Result<Self, Error> {
-        let spec = record.locate(&folders_of(run))?.spec();
-        refuse_mesh(&spec)?;
-        Self::of(&spec, options)
-    }
-
     /// Reads what a specification names.
     pub fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Error> {
         // Read once: what is recorded is what was read, of a pipe, too.
@@ -69,8 +46,7 @@ impl Input {
         })
     }
 
-    /// Reads one structure like [`Input::read`], and returns the fate of every atom, kept or dropped. With
-    /// `--min-plddt` the B column counts as pLDDT.
+    /// Reads one structure, and the fate of every atom. With `--min-plddt` the B column counts as pLDDT.
     pub fn read_with_fates(
         text: &str,
         options: &ReadOptions,
@@ -97,8 +73,8 @@ impl Input {
         Self::all(&specs.collect::<Result<Vec<_>, _>>()?, options)
     }
 
-    /// As [`Input::recorded`], of structures that are docked together.
-    pub fn recorded_all<const N: usize>(
+    /// Reads what the run.json at `run` records, checking that the files are still the same.
+    pub fn recorded<const N: usize>(
         records: [&InputRecord; N],
         run: &Path,
         options: &ReadOptions,
@@ -112,9 +88,6 @@ impl Input {
 
     /// Reads the structures that are docked together. `--min-plddt` holds for those of them that are known as
     /// predictions; where none is, the user's word is taken for all whose B values can be pLDDT.
-    ///
-    /// # Errors
-    /// Where one cannot be read, and where an option does nothing to any.
     pub fn all<const N: usize>(
         specs: &[InputSpec],
         options: &ReadOptions,
@@ -133,7 +106,7 @@ impl Input {
         let read = |options: &ReadOptions| -> Result<Vec<Self>, Error> {
             let inputs = files.iter().map(|(spec, bytes)| {
                 let record = InputRecord::new(spec, bytes);
-                let molecule = read_recent((spec, &record), bytes, options)?;
+                let molecule = read_bytes(spec, bytes.clone(), options)?;
                 Ok(Self { record, molecule })
             });
             inputs.collect()
@@ -152,16 +125,13 @@ impl Input {
             .map_err(|_| Error::machine("structures were lost on reading"))
     }
 
-    /// The structure for run.json.
     pub fn entry(&self) -> Result<InputEntry, Error> {
         InputEntry::of_molecule(self.record.clone(), &self.molecule)
     }
 }
 
-/// Refuses options that did nothing to the molecules read with them.
-///
-/// These are `--min-plddt` where none is a predicted model, `--assembly` where no file describes one, `--model` where
-/// none has several models, and `--drop-residue` of a name that none has.
+/// Refuses options without effect on the molecules read with them: `--min-plddt`, `--assembly`, `--model` and
+/// `--drop-residue`.
 fn check_used<'a>(
     options: &ReadOptions,
     molecules: impl IntoIterator<Item = &'a Molecule>,
@@ -220,7 +190,7 @@ fn check_used<'a>(
             "--assembly is for files that describe their biological assemblies, and none does here",
         )
         .help(
-            "leave it out, or give the file as the archive has it: assemblies stand in REMARK 350 (PDB) or in \
+            "leave it out, or give the file as the archive has it: assemblies are in REMARK 350 (PDB) or in \
              _pdbx_struct_assembly_gen (mmCIF)",
         ));
     }

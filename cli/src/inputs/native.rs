@@ -1,20 +1,20 @@
-//! The known complex that poses are measured against: its options, its files, and its match with what was docked.
+//! The known complex that poses are measured against: its options, its files, and its match with the docked molecules.
 
 use std::path::Path;
 
-use crate::tables::report::counted;
 use clap::{Args, ValueHint};
-use knotdock::evaluate::{
-    ChainChoice, Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch,
-};
-use knotdock::output::records::input_record::NativeRecord;
-use knotdock::output::tables::poses::PoseRow;
-use knotdock_structures::molecule::{Molecule, ReadOptions};
 use rayon::prelude::*;
 
 use crate::inputs::molecules::Input;
 use crate::messages::console::Console;
+use crate::tables::report::counted;
+use knotdock::evaluate::{
+    ChainChoice, Evaluator, MatchReport, Native, NativeComplex, PoseQuality, SideMatch,
+};
+use knotdock::output::records::input_record::{InputRecord, NativeRecord};
+use knotdock::output::tables::poses::PoseRow;
 use knotdock_structures::Error;
+use knotdock_structures::molecule::{Molecule, ReadOptions};
 
 /// Options that name the known complex.
 #[derive(Args, Clone, Debug)]
@@ -26,7 +26,7 @@ pub struct NativeArguments {
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, help_heading = HEADING)]
     #[arg(conflicts_with_all = ["native_receptor", "native_ligand"])]
     native: Option<String>,
-    /// Receptor of the known complex, in a file of its own.
+    /// Receptor of the known complex, in its own file.
     #[arg(long, value_name = "FILE", value_hint = ValueHint::FilePath, requires = "native_ligand", help_heading = HEADING)]
     native_receptor: Option<String>,
     /// Ligand of the known complex, in the frame of its receptor.
@@ -36,118 +36,99 @@ pub struct NativeArguments {
 
 const HEADING: &str = "Known complex";
 
-/// The files of the known complex.
+/// The files of the known complex: one with both partners, or one for each.
 #[derive(Clone)]
-pub enum NativeFiles {
-    /// One file with both partners.
-    Complex(Box<Input>),
-    /// A file for each.
-    Partners {
-        /// The receptor's.
-        receptor: Box<Input>,
-        /// The ligand's.
-        ligand: Box<Input>,
-    },
+pub struct NativeFiles {
+    /// Both partners, or the receptor.
+    first: Input,
+    ligand: Option<Input>,
 }
 
 impl NativeArguments {
-    /// Reads the files that are named, if any.
     pub fn read(&self) -> Result<Option<NativeFiles>, Error> {
-        let by_default = ReadOptions::default();
-        match (&self.native, &self.native_receptor, &self.native_ligand) {
-            (Some(complex), _, _) => Ok(Some(NativeFiles::Complex(Box::new(Input::read(
-                complex,
-                &by_default,
-            )?)))),
-            (None, Some(receptor), Some(ligand)) => Ok(Some(NativeFiles::Partners {
-                receptor: Box::new(Input::read(receptor, &by_default)?),
-                ligand: Box::new(Input::read(ligand, &by_default)?),
-            })),
-            _ => Ok(None),
-        }
+        let Some(first) = self.native.as_ref().or(self.native_receptor.as_ref()) else {
+            return Ok(None);
+        };
+        let read = |file: &String| {
+            let [input] = Input::read_all([file], &ReadOptions::default())?;
+            Ok::<_, Error>(input)
+        };
+        let ligand = self.native_ligand.as_ref().map(read).transpose()?;
+        let first = read(first)?;
+        Ok(Some(NativeFiles { first, ligand }))
     }
 }
 
 impl NativeFiles {
     /// Reads the files that a run recorded.
     pub fn recorded(record: &NativeRecord, run: &Path) -> Result<Self, Error> {
-        let by_default = ReadOptions::default();
-        Ok(match record {
-            NativeRecord::Complex(complex) => {
-                Self::Complex(Box::new(Input::recorded(complex, run, &by_default)?))
-            }
-            NativeRecord::Partners { receptor, ligand } => Self::Partners {
-                receptor: Box::new(Input::recorded(receptor, run, &by_default)?),
-                ligand: Box::new(Input::recorded(ligand, run, &by_default)?),
-            },
+        let read = |record: &InputRecord| {
+            let [input] = Input::recorded([record], run, &ReadOptions::default())?;
+            Ok::<_, Error>(input)
+        };
+        let (first, ligand) = match record {
+            NativeRecord::Complex(complex) => (complex, None),
+            NativeRecord::Partners { receptor, ligand } => (receptor, Some(ligand)),
+        };
+        Ok(Self {
+            first: read(first)?,
+            ligand: ligand.map(read).transpose()?,
         })
     }
 
-    /// The files as read.
     pub fn inputs(&self) -> impl Iterator<Item = &Input> {
-        let (first, second) = match self {
-            Self::Complex(complex) => (complex, None),
-            Self::Partners { receptor, ligand } => (receptor, Some(ligand)),
-        };
-        [Some(first), second]
-            .into_iter()
-            .flatten()
-            .map(AsRef::as_ref)
+        std::iter::once(&self.first).chain(&self.ligand)
     }
 
-    /// The files for run.json.
     pub fn record(&self) -> NativeRecord {
-        match self {
-            Self::Complex(complex) => NativeRecord::Complex(complex.record.clone()),
-            Self::Partners { receptor, ligand } => NativeRecord::Partners {
-                receptor: receptor.record.clone(),
+        let first = self.first.record.clone();
+        match &self.ligand {
+            None => NativeRecord::Complex(first),
+            Some(ligand) => NativeRecord::Partners {
+                receptor: first,
                 ligand: ligand.record.clone(),
             },
         }
     }
 
-    /// Matches the complex with the molecules docked.
-    pub fn evaluator(&self, receptor: &Molecule, ligand: &Molecule) -> Result<Evaluator, Error> {
-        self.evaluator_by(receptor, ligand, &ChainChoice::default())
+    /// Matches the complex with receptor and ligand as docked, and reports the match.
+    pub fn matched(&self, pair: [&Molecule; 2], console: Console) -> Result<Evaluator, Error> {
+        let evaluator = self.evaluator(pair, &ChainChoice::default())?;
+        self.warn(console);
+        announce(&evaluator, console);
+        Ok(evaluator)
     }
 
-    /// Matches the complex with the molecules docked, by chains that the user chooses.
-    pub fn evaluator_by(
+    /// Matches the complex with receptor and ligand, by chains that the user chooses.
+    pub fn evaluator(
         &self,
-        receptor: &Molecule,
-        ligand: &Molecule,
+        [receptor, ligand]: [&Molecule; 2],
         choice: &ChainChoice,
     ) -> Result<Evaluator, Error> {
         let choice = ChainChoice {
             named: choice.named || self.inputs().any(|input| input.record.chains.is_some()),
             ..choice.clone()
         };
-        let (native, file) = match self {
-            Self::Complex(complex) => (Native::Complex(&complex.molecule), complex.as_ref()),
-            Self::Partners {
-                receptor: native_receptor,
-                ligand: native_ligand,
-            } => (
-                Native::Pair {
-                    receptor: &native_receptor.molecule,
-                    ligand: &native_ligand.molecule,
-                },
-                native_receptor.as_ref(),
-            ),
+        let first = &self.first.molecule;
+        let native = match &self.ligand {
+            None => Native::Complex(first),
+            Some(ligand) => Native::Pair {
+                receptor: first,
+                ligand: &ligand.molecule,
+            },
         };
         Evaluator::with_chains(receptor, ligand, native, &choice).map_err(|error| {
             let with_notes = self.notes().fold(error, |error, note| error.and(note));
-            with_notes.at(&file.record.path)
+            with_notes.at(&self.first.record.path)
         })
     }
 
-    /// What reading the files left out or warned of.
+    /// Omissions and warnings of reading the files.
     fn notes(&self) -> impl Iterator<Item = String> {
         self.inputs()
             .flat_map(|input| reading_notes(&input.molecule))
     }
 
-    /// Warns of what reading the files left out.
     pub fn warn(&self, console: Console) {
         for note in self.notes() {
             console.warn(note);
@@ -155,7 +136,7 @@ impl NativeFiles {
     }
 }
 
-/// What reading a file left out or warned of: an error that follows may come of it.
+/// Omissions and warnings of reading a file, which may explain an error that follows.
 fn reading_notes(molecule: &Molecule) -> Vec<String> {
     let report = &molecule.report;
     let last = report.altered.models_ignored + 1;
@@ -200,7 +181,8 @@ pub fn announce(evaluator: &Evaluator, console: Console) {
 /// What was matched, in a line.
 fn brief_match_text(report: &MatchReport) -> String {
     let share = 100.0 * report.interface_share;
-    let mut text = format!("Known complex: {share:.0}% of its interface is in what is docked");
+    let mut text =
+        format!("Known complex: {share:.0}% of its interface is in the docked molecules");
     if let Some(others) = others_text(report) {
         text += &format!("; {others}");
     }
@@ -231,7 +213,6 @@ fn match_text(report: &MatchReport) -> String {
     text
 }
 
-/// Complexes that are shown.
 const COMPLEXES_SHOWN: usize = 4;
 
 /// The complexes of a native that holds several, and how one is chosen.

@@ -2,6 +2,12 @@
 
 use std::path::{Path, PathBuf};
 
+use serde_json::{Value, json};
+
+use crate::arguments::options::GivenOptions;
+use crate::inputs::bodies::Bodies;
+use crate::inputs::native::NativeFiles;
+use crate::messages::console::Console;
 use crate::records::recorded_run::RecordedRun;
 use knotdock::dock::pair::{GivenLengths, PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
@@ -10,23 +16,28 @@ use knotdock::output::files::staging::put_back;
 use knotdock::output::records::manifest::Inputs;
 use knotdock::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::pose_space::arrangement::Arrangement;
-use serde_json::{Value, json};
-
-use crate::arguments::options::GivenOptions;
-use crate::inputs::bodies::Bodies;
-use crate::inputs::native::{NativeFiles, announce};
-use crate::messages::console::Console;
 use knotdock_structures::Error;
 
-/// The offset, where it is given, and which further options are that follow from the meshes.
-pub fn lengths(given: &GivenOptions) -> (Option<f64>, GivenLengths) {
-    let offset = given.has("offset").then_some(given.options.kernel.offset);
-    let lengths = GivenLengths {
-        resolution: given.has("resolution"),
-        cluster_radius: given.has("cluster_radius"),
-        alpha: given.has("alpha"),
-    };
-    (offset, lengths)
+/// Options that follow from meshes unless they are given.
+#[derive(Clone, Copy)]
+pub struct GivenMeshOptions {
+    /// The offset, if it is given.
+    pub offset: Option<f64>,
+    /// Which further ones are given.
+    pub lengths: GivenLengths,
+}
+
+impl From<&GivenOptions> for GivenMeshOptions {
+    fn from(given: &GivenOptions) -> Self {
+        Self {
+            offset: given.has("offset").then_some(given.options.kernel.offset),
+            lengths: GivenLengths {
+                resolution: given.has("resolution"),
+                cluster_radius: given.has("cluster_radius"),
+                alpha: given.has("alpha"),
+            },
+        }
+    }
 }
 
 /// The known complex, as far as it matches the molecules docked.
@@ -57,41 +68,25 @@ impl Known {
     }
 }
 
-/// A requested run, by options or by a run.json.
 pub struct Request {
-    /// What stays and what moves.
     pub bodies: Bodies,
     /// The known complex, if one was named.
     pub native: Option<NativeFiles>,
     /// What to do; of meshes, lengths that are not given follow from them.
     pub options: DockOptions,
-    /// The offset, where it is given.
-    pub offset: Option<f64>,
-    /// Further lengths that are given.
-    pub given: GivenLengths,
+    /// Options that are given and do not follow from meshes.
+    pub given: GivenMeshOptions,
     /// Whether a number of rotations is none that was typed: it stands for an angle, or an earlier run had it.
     pub is_angle: bool,
 }
 
 impl Request {
-    /// Reads what is docked with some options.
-    pub fn read(
-        [receptor, ligand]: [&String; 2],
-        native: Option<NativeFiles>,
-        given: GivenOptions,
-    ) -> Result<Self, Error> {
-        let bodies = Bodies::read(receptor, ligand, &given.options)?;
-        Ok(Self::of(bodies, native, given))
-    }
-
-    /// The docking of what has been read, with some options.
+    /// The docking of bodies with some options.
     pub fn of(bodies: Bodies, native: Option<NativeFiles>, given: GivenOptions) -> Self {
-        let (offset, lengths) = lengths(&given);
         Self {
             bodies,
             native,
-            offset,
-            given: lengths,
+            given: (&given).into(),
             is_angle: given.by_angle() || !given.has("rotations"),
             options: given.options,
         }
@@ -118,17 +113,20 @@ impl Request {
             ));
         }
         Ok(Self {
-            bodies: Bodies::recorded([&run.receptor, &run.ligand], path, &run.options)?,
+            bodies: Bodies::recorded(run.inputs.pair(), path, &run.options)?,
             native: run
+                .inputs
                 .native
                 .as_ref()
                 .map(|native| NativeFiles::recorded(native, path))
                 .transpose()?,
-            offset: Some(run.options.kernel.offset),
-            given: GivenLengths {
-                resolution: true,
-                cluster_radius: true,
-                alpha: true,
+            given: GivenMeshOptions {
+                offset: Some(run.options.kernel.offset),
+                lengths: GivenLengths {
+                    resolution: true,
+                    cluster_radius: true,
+                    alpha: true,
+                },
             },
             is_angle: true,
             options: run.options,
@@ -137,33 +135,22 @@ impl Request {
 
     /// Plans the run; of meshes, options that follow from them are filled in.
     pub fn plan(&mut self, console: Console) -> Result<PreparedPair, Error> {
-        let (offset, given) = (self.offset, self.given);
-        self.bodies.plan(&mut self.options, offset, given, console)
+        self.bodies.plan(&mut self.options, self.given, console)
     }
 
-    /// Matches the known complex, if there is one, with the molecules. One that does not match costs a warning, not the
-    /// docking.
+    /// Matches the known complex, if there is one; a mismatch is a warning.
     pub fn known(&self, console: Console) -> Result<Option<Known>, Error> {
         match (&self.native, &self.bodies) {
             (Some(native), Bodies::Molecules(inputs)) => {
-                let [receptor, ligand] = inputs.as_ref();
-                Ok(Some(
-                    match native.evaluator(&receptor.molecule, &ligand.molecule) {
-                        Ok(evaluator) => {
-                            native.warn(console);
-                            announce(&evaluator, console);
-                            Known::Matched(evaluator)
-                        }
-                        Err(failure) => {
-                            console.warn(format!(
-                                "no pose is measured: {}; {}",
-                                failure.in_one_line(),
-                                "`knotdock evaluate` measures the run by another known complex"
-                            ));
-                            Known::Unmatched(failure.message().to_owned())
-                        }
-                    },
-                ))
+                let pair = inputs.each_ref().map(|input| &input.molecule);
+                let matched = native.matched(pair, console).map(Known::Matched);
+                Ok(Some(matched.unwrap_or_else(|failure| {
+                    console.warn(format!(
+                        "no pose is measured: {}; `knotdock evaluate` measures the run by another known complex",
+                        failure.in_one_line()
+                    ));
+                    Known::Unmatched(failure.message().to_owned())
+                })))
             }
             (Some(_), Bodies::Meshes(_)) => Err(Error::input(
                 "a known complex is for molecules, and these are meshes",
@@ -173,7 +160,6 @@ impl Request {
         }
     }
 
-    /// The inputs for run.json, with how meshes were sampled.
     pub fn inputs(&self, sampling: Option<&Sampling>) -> Result<Inputs, Error> {
         let [receptor, ligand] = self.bodies.entries(sampling)?;
         Ok(Inputs {

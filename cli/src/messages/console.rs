@@ -6,25 +6,36 @@
 //! A reader that closes the pipe early (`knotdock ... | head`) never stops a run: what it does not want is not
 //! written. A disk that is full does not stop one either, but the command fails in the end.
 
-use crate::messages::failure;
 use std::borrow::Cow;
+use std::fmt::Debug;
 use std::io::{self, IsTerminal, Write};
-use std::sync::OnceLock;
-use std::sync::mpsc::{RecvTimeoutError, Sender, channel};
-use std::thread::{Builder, JoinHandle};
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
+use std::thread::{Builder, sleep};
 use std::time::Duration;
 
-use anstream::{AutoStream, ColorChoice};
 use anstyle::{AnsiColor, Style};
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
-use knotdock::progress::{Ended, Progress};
+use serde_json::{Value, json};
 
-use crate::messages::listener::Listener;
-use crate::messages::shown::{shown, shown_json};
+use crate::messages::shown::{shown, shown_json, shown_name};
+use knotdock::progress::{Ended, Progress};
 use knotdock_structures::Error;
 
-/// Why a part of the report could not be written, the first time that happened.
+/// The first error on writing the report.
 static LOST: OnceLock<io::Error> = OnceLock::new();
+
+/// Receives what a command would write to the terminal, from any of its threads. What is not implemented is dropped.
+pub trait Listener: Progress + Debug {
+    /// A paragraph of the report.
+    fn say(&self, _text: &str) {}
+    /// A warning.
+    fn warn(&self, _text: &str) {}
+    /// An error that does not end the command.
+    fn error(&self, _text: &str) {}
+    /// The JSON object of the command.
+    fn result(&self, _object: &Value) {}
+}
 
 /// The terminal as a command sees it, or the program that listens in its place.
 #[derive(Clone, Copy, Debug, Default)]
@@ -50,7 +61,6 @@ impl<'a> Console<'a> {
         }
     }
 
-    /// Writes a paragraph of the report.
     pub fn say(&self, text: impl ToString) {
         if self.quiet {
             return;
@@ -58,16 +68,12 @@ impl<'a> Console<'a> {
         if let Some(listener) = self.listener {
             return listener.say(&text.to_string());
         }
+        let text = text.to_string();
         if self.json {
-            write_line(&mut io::stderr(), &shown(&text.to_string()));
-        } else {
-            let mut stream = io::stdout();
-            let text = text.to_string();
-            let written = writeln!(stream, "{}", shown(&text)).and_then(|()| stream.flush());
-            if let Err(error) = written {
-                // Only the first failure is reported.
-                let _ = LOST.set(error);
-            }
+            write_line(&mut io::stderr(), &shown(&text));
+        } else if let Err(error) = written(&mut io::stdout(), &shown(&text)) {
+            // Only the first failure is reported.
+            let _ = LOST.set(error);
         }
     }
 
@@ -83,7 +89,6 @@ impl<'a> Console<'a> {
         LOST.get().map_or(Ok(()), unwritten)
     }
 
-    /// Writes a warning on standard error.
     pub fn warn(&self, text: impl ToString) {
         if self.quiet {
             return;
@@ -92,7 +97,17 @@ impl<'a> Console<'a> {
             listener.warn(&text.to_string());
         } else {
             let text = format!("warning: {}", text.to_string());
-            write_line(&mut io::stderr(), &painted(&shown(&text)));
+            write_line(&mut anstream::stderr(), &in_colour(&shown(&text)));
+        }
+    }
+
+    /// Warns of leftovers of ended commands. They stay: only the user knows whether a command still runs.
+    pub fn warn_leftovers(&self, paths: &[PathBuf]) {
+        for path in paths {
+            self.warn(format!(
+                "{} was left by a command that was ended, or that still runs: remove it if none does",
+                path.display()
+            ));
         }
     }
 
@@ -104,9 +119,8 @@ impl<'a> Console<'a> {
         write_line(&mut io::stderr(), &shown(&text.to_string()));
     }
 
-    /// Writes the command's JSON object, if it was requested: what cannot be written is a failure then, for the
-    /// object is all there is, unless its reader has gone.
-    pub fn result(&self, object: &serde_json::Value) -> Result<(), Error> {
+    /// Writes the command's JSON object, if requested; a failure to write it is an error unless its reader is gone.
+    pub fn result(&self, object: &Value) -> Result<(), Error> {
         if let Some(listener) = self.listener {
             listener.result(object);
             return Ok(());
@@ -114,21 +128,20 @@ impl<'a> Console<'a> {
         if !self.json {
             return Ok(());
         }
-        let mut stream = io::stdout();
-        let object = object.to_string();
-        match writeln!(stream, "{}", shown_json(&object)).and_then(|()| stream.flush()) {
-            Err(error) => unwritten(&error),
-            Ok(()) => Ok(()),
-        }
+        let written = written(&mut io::stdout(), &shown_json(&object.to_string()));
+        written.or_else(|error| unwritten(&error))
     }
 
     /// Writes a failure: for a person on standard error, for a program on standard output as well.
     pub fn fail(&self, failure: &Error) {
         if self.json {
-            let object = failure::json(failure).to_string();
+            let object = failure_json(failure).to_string();
             write_line(&mut io::stdout(), &shown_json(&object));
         }
-        write_line(&mut io::stderr(), &painted(&shown(&failure::text(failure))));
+        write_line(
+            &mut anstream::stderr(),
+            &in_colour(&shown(&failure_text(failure))),
+        );
     }
 
     /// Reports to the listener that a stage of `total` steps begins; the terminal shows these steps in other ways.
@@ -138,7 +151,6 @@ impl<'a> Console<'a> {
         }
     }
 
-    /// Reports to the listener that a step of the stage is done.
     pub fn advances(&self) {
         if let (Some(listener), false) = (self.listener, self.quiet) {
             listener.advance(1);
@@ -147,7 +159,7 @@ impl<'a> Console<'a> {
 
     /// Fails if the listener ends the command.
     pub fn go_on(&self) -> Result<(), Error> {
-        let ended = self.listener.map_or(Ok(()), Listener::go_on);
+        let ended = self.listener.map_or(Ok(()), |listener| listener.go_on());
         ended.map_err(|why| Error::lasting(why).help("start it again"))
     }
 
@@ -160,12 +172,15 @@ impl<'a> Console<'a> {
         ) {
             bar.set_style(style.progress_chars("=> "));
         }
-        let shown = !self.quiet && self.listener.is_none() && io::stderr().is_terminal();
+        let is_shown = !self.quiet && self.listener.is_none() && io::stderr().is_terminal();
+        let shown = is_shown.then(|| Arc::new(()));
+        if let Some(shown) = &shown {
+            keep_ticking(&bar, shown);
+        }
         ProgressLine {
-            ticker: shown.then(|| Ticker::start(&bar)).flatten(),
             bar,
             shown,
-            is_heard: !self.quiet && self.listener.is_some(),
+            receiver: self.listener.filter(|_| !self.quiet),
             listener: self.listener,
         }
     }
@@ -182,64 +197,42 @@ fn unwritten(error: &io::Error) -> Result<(), Error> {
     )
 }
 
+fn written(stream: &mut dyn Write, text: &str) -> io::Result<()> {
+    writeln!(stream, "{text}").and_then(|()| stream.flush())
+}
+
 /// Writes a line. Failures, such as a closed pipe, are not reported.
 fn write_line(stream: &mut dyn Write, text: &str) {
-    let _ = writeln!(stream, "{text}").and_then(|()| stream.flush());
+    let _ = written(stream, text);
 }
 
 /// The progress of a search on one line of the terminal, cleared when the search ends.
 pub struct ProgressLine<'a> {
     bar: ProgressBar,
-    shown: bool,
-    ticker: Option<Ticker>,
-    /// Whether the listener receives the steps; it always decides whether the work goes on.
-    is_heard: bool,
+    /// Present if it is shown; the thread that redraws it ends without.
+    shown: Option<Arc<()>>,
+    /// Receives the steps.
+    receiver: Option<&'a dyn Listener>,
+    /// Decides whether the work goes on.
     listener: Option<&'a dyn Listener>,
 }
 
 /// Time between two drawings of a line without progress.
 const TICK: Duration = Duration::from_millis(200);
 
-/// A thread that redraws the line, so that its clock goes on.
-///
-/// indicatif has one, too, and panics where the thread cannot be started.
-struct Ticker {
-    /// Ends the thread when it is dropped.
-    running: Option<Sender<()>>,
-    thread: Option<JoinHandle<()>>,
-}
-
-impl Ticker {
-    /// Starts it; `None` where the system has no thread for it: the line then moves with the work alone.
-    fn start(bar: &ProgressBar) -> Option<Self> {
-        let (running, is_running) = channel::<()>();
-        let bar = bar.clone();
-        let ticks = move || {
-            while is_running.recv_timeout(TICK) == Err(RecvTimeoutError::Timeout) {
-                if !bar.is_finished() {
-                    bar.tick();
-                }
+/// Redraws a line while it is shown, so that its clock goes on. Without a thread for that, the line moves with the work
+/// alone; indicatif's own ticker panics then.
+fn keep_ticking(bar: &ProgressBar, shown: &Arc<()>) {
+    let (bar, shown) = (bar.clone(), Arc::downgrade(shown));
+    let ticks = move || {
+        while shown.strong_count() > 0 {
+            sleep(TICK);
+            if !bar.is_finished() {
+                bar.tick();
             }
-        };
-        let thread = Builder::new()
-            .name("progress".to_owned())
-            .spawn(ticks)
-            .ok()?;
-        Some(Self {
-            running: Some(running),
-            thread: Some(thread),
-        })
-    }
-}
-
-impl Drop for Ticker {
-    fn drop(&mut self) {
-        self.running.take();
-        if let Some(thread) = self.thread.take() {
-            // It has nothing to report, and its end is all that is waited for.
-            let _ = thread.join();
         }
-    }
+    };
+    let _ = Builder::new().name("progress".to_owned()).spawn(ticks);
 }
 
 impl ProgressLine<'_> {
@@ -255,11 +248,8 @@ impl Progress for ProgressLine<'_> {
         if total == 0 {
             return;
         }
-        if self.is_heard {
-            if let Some(listener) = self.listener {
-                listener.stage(name, total);
-            }
-            return;
+        if let Some(receiver) = self.receiver {
+            return receiver.stage(name, total);
         }
         self.bar.finish_and_clear();
         // Each of these would draw a line of its own that is half the old stage's and half the new one's.
@@ -267,26 +257,26 @@ impl Progress for ProgressLine<'_> {
         self.bar.reset();
         self.bar.set_length(total);
         self.bar.set_message(name.to_owned());
-        if self.shown {
+        if self.shown.is_some() {
             self.bar.set_draw_target(ProgressDrawTarget::stderr());
         }
     }
 
     fn advance(&self, by: u64) {
-        match self.listener {
-            Some(listener) if self.is_heard => listener.advance(by),
-            _ => self.bar.inc(by),
+        match self.receiver {
+            Some(receiver) => receiver.advance(by),
+            None => self.bar.inc(by),
         }
     }
 
     fn go_on(&self) -> Result<(), Ended> {
-        self.listener.map_or(Ok(()), Listener::go_on)
+        self.listener.map_or(Ok(()), |listener| listener.go_on())
     }
 }
 
 impl Drop for ProgressLine<'_> {
     fn drop(&mut self) {
-        self.ticker.take();
+        self.shown.take();
         self.bar.finish_and_clear();
     }
 }
@@ -295,15 +285,7 @@ impl Drop for ProgressLine<'_> {
 const PAINTED: [(&str, AnsiColor); 2] =
     [("error:", AnsiColor::Red), ("warning:", AnsiColor::Yellow)];
 
-/// A message for standard error, its first word in colour if the terminal has colours: not in a pipe, with NO_COLOR or
-/// with TERM=dumb.
-fn painted(text: &str) -> Cow<'_, str> {
-    if AutoStream::choice(&io::stderr()) == ColorChoice::Never {
-        return Cow::Borrowed(text);
-    }
-    in_colour(text)
-}
-
+/// A message with its first word in colour; anstream drops the colour in a pipe, with NO_COLOR or with TERM=dumb.
 fn in_colour(text: &str) -> Cow<'_, str> {
     for (word, colour) in PAINTED {
         if let Some(rest) = text.strip_prefix(word) {
@@ -312,6 +294,31 @@ fn in_colour(text: &str) -> Cow<'_, str> {
         }
     }
     Cow::Borrowed(text)
+}
+
+/// The lines for a person.
+pub fn failure_text(error: &Error) -> String {
+    let mut text = format!("error: {}", error.message());
+    if let Some(file) = error.file() {
+        text += &format!("\n  in {}", shown_name(&file.display().to_string()));
+        if let Some(line) = error.line() {
+            text += &format!(", line {line}");
+        }
+    }
+    if let Some(remedy) = error.remedy() {
+        text += &format!("\n  help: {remedy}");
+    }
+    text
+}
+
+/// The object for a program: `{"error": {"file", "line", "message", "remedy"}}`.
+pub fn failure_json(error: &Error) -> Value {
+    json!({ "error": {
+        "file": error.file().map(|file| file.display().to_string()),
+        "line": error.line(),
+        "message": error.message(),
+        "remedy": error.remedy(),
+    }})
 }
 
 #[cfg(test)]

@@ -5,8 +5,7 @@
 
 use std::borrow::Cow;
 
-/// Whether a character moves the cursor, changes the terminal, or turns the direction of writing; what ends or indents
-/// a line of this program's own does not.
+/// Whether a character moves the cursor, changes the terminal, or turns the direction of writing.
 fn is_active(character: char) -> bool {
     let is_own = matches!(character, '\n' | '\t');
     let turns = matches!(
@@ -16,7 +15,6 @@ fn is_active(character: char) -> bool {
     turns || character.is_control() && !is_own
 }
 
-/// Text with such characters escaped, as in `\u{1b}`.
 pub fn shown(text: &str) -> Cow<'_, str> {
     escaped(text, |character| character.escape_unicode().to_string())
 }
@@ -46,6 +44,15 @@ pub fn shown_name(name: &str) -> String {
     shown(name).replace('\n', "\\u{a}")
 }
 
+/// A word that a POSIX shell reads as the text itself: bare if possible, else in single quotes.
+pub(crate) fn shell_word(text: &str) -> Cow<'_, str> {
+    let is_bare = |c: char| c.is_alphanumeric() || "/._-+=:,@%".contains(c);
+    match !text.is_empty() && text.chars().all(is_bare) {
+        true => Cow::Borrowed(text),
+        false => Cow::Owned(format!("'{}'", text.replace('\'', r"'\''"))),
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -68,5 +75,31 @@ mod tests {
         let read: serde_json::Value = serde_json::from_str(&shown_json(&object)).unwrap();
         assert_eq!(read["a"], name);
         assert_eq!(shown_name("a\nerror: b"), "a\\u{a}error: b");
+    }
+
+    use proptest::prelude::*;
+
+    #[test]
+    fn plain_words_stay_as_they_are() {
+        for plain in ["run", "a/b-2_c.pdb", "Å=1:2,3@4%+"] {
+            assert_eq!(shell_word(plain), plain);
+        }
+        assert_eq!(shell_word("it's"), r"'it'\''s'");
+        assert_eq!(shell_word(""), "''");
+    }
+
+    /// The shell itself says what a word means to it.
+    #[cfg(unix)]
+    #[test]
+    fn a_shell_reads_the_text_back() {
+        let texts = proptest::collection::vec(r#"[ -~\n\t]{0,20}|[^\x00]{0,8}"#, 20);
+        proptest!(ProptestConfig::with_cases(8), |(texts in texts)| {
+            let words: Vec<_> = texts.iter().map(|text| shell_word(text)).collect();
+            let script = format!(r"printf '%s\0' {}", words.join(" "));
+            let output = std::process::Command::new("sh").arg("-c").arg(script).output().unwrap();
+            let read: Vec<&[u8]> = output.stdout.split_inclusive(|byte| *byte == 0).collect();
+            let wanted: Vec<Vec<u8>> = texts.iter().map(|text| format!("{text}\0").into_bytes()).collect();
+            prop_assert_eq!(read, wanted);
+        });
     }
 }

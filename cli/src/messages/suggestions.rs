@@ -2,6 +2,7 @@
 
 use clap::builder::StyledStr;
 use clap::error::{ContextKind, ContextValue, ErrorKind};
+
 use knotdock::options::option_named;
 
 /// Remedy for a word that is not UTF-8.

@@ -4,7 +4,6 @@
 pub(super) const CHARACTER: f64 = 8.0;
 /// Height in pixels of a line of labels.
 pub(super) const LINE: f64 = 16.0;
-/// Distance in pixels of a label from its point.
 const DISTANCE: f64 = 9.0;
 /// Half edge in pixels of the square that a point takes.
 const POINT: f64 = 6.0;
@@ -12,18 +11,14 @@ const POINT: f64 = 6.0;
 /// Half edge in pixels of the squares that a line takes.
 const LINE_HALF: f64 = 2.0;
 
-/// Which part of a text lies at its place.
+/// Which part of a text is at its place.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Anchor {
-    /// Its left end.
     Start,
-    /// Its middle.
     Middle,
-    /// Its right end.
     End,
 }
 
-/// Width of a text in pixels.
 pub(super) fn text_width(text: &str) -> f64 {
     CHARACTER * text.chars().count() as f64
 }

@@ -2,7 +2,6 @@
 //!
 //! Charts are drawn by plotters, whose SVG backend needs no font: a viewer sets the text in its own monospaced face.
 
-mod axis;
 pub mod chart;
 mod labels;
 pub mod svg;

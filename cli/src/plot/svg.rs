@@ -2,8 +2,7 @@
 
 use std::fmt::Write;
 
-/// Red, green and blue.
-pub type Colour = [u8; 3];
+use super::chart::Colour;
 
 /// An SVG file in the making. Lengths are its own units, from the upper left.
 #[derive(Clone, Debug)]

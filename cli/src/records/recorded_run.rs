@@ -1,17 +1,17 @@
 //! The part of a `run.json` that later commands read.
 
-use knotdock_structures::Error;
 use std::path::Path;
 
 use serde::Deserialize;
 
-use crate::records::ensemble_record::{RECORD, is_ensemble};
+use crate::records::{ENSEMBLE_RECORD, is_ensemble};
 use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
 use knotdock::options::{DockOptions, MachineOptions};
 use knotdock::output::files::file_error;
 use knotdock::output::records::input_record::{InputRecord, NativeRecord};
 use knotdock::output::records::manifest::SCHEMA;
 use knotdock::output::records::program::{COMMIT, VERSION};
+use knotdock_structures::Error;
 
 const REMEDY: &str = "give a run that `knotdock dock` of this version wrote";
 
@@ -27,7 +27,7 @@ pub fn read_record(path: &Path) -> Result<Vec<u8>, Error> {
 }
 
 /// The part of a `run.json` that later commands read.
-#[derive(Debug)]
+#[derive(Debug, Deserialize)]
 pub struct RecordedRun {
     /// Version of the program that wrote it.
     pub version: String,
@@ -35,14 +35,28 @@ pub struct RecordedRun {
     pub commit: String,
     /// CPU feature level of the run.
     pub cpu_features: String,
+    /// The input files.
+    pub inputs: RecordedInputs,
+    /// The options.
+    pub options: DockOptions,
+}
+
+/// The input files of a recorded run.
+#[derive(Debug, Deserialize)]
+pub struct RecordedInputs {
     /// The receptor's file.
     pub receptor: InputRecord,
     /// The ligand's file.
     pub ligand: InputRecord,
     /// The native's files, if there was one.
     pub native: Option<NativeRecord>,
-    /// The options.
-    pub options: DockOptions,
+}
+
+impl RecordedInputs {
+    /// Receptor and ligand.
+    pub fn pair(&self) -> [&InputRecord; 2] {
+        [&self.receptor, &self.ligand]
+    }
 }
 
 impl RecordedRun {
@@ -56,22 +70,8 @@ impl RecordedRun {
             schema: u32,
             program: String,
         }
-        #[derive(Deserialize)]
-        struct File {
-            version: String,
-            commit: String,
-            cpu_features: String,
-            inputs: FileInputs,
-            options: DockOptions,
-        }
-        #[derive(Deserialize)]
-        struct FileInputs {
-            receptor: InputRecord,
-            ligand: InputRecord,
-            native: Option<NativeRecord>,
-        }
         let directory = path.parent().unwrap_or(Path::new(""));
-        let names_record = path.file_name().is_some_and(|name| name == RECORD);
+        let names_record = path.file_name().is_some_and(|name| name == ENSEMBLE_RECORD);
         if names_record || (!path.exists() && is_ensemble(directory)) {
             return Err(file_error::refused(
                 directory,
@@ -106,16 +106,7 @@ impl RecordedRun {
                 header.schema
             )));
         }
-        let file: File = serde_json::from_slice(&text).map_err(malformed)?;
-        Ok(Self {
-            version: file.version,
-            commit: file.commit,
-            cpu_features: file.cpu_features,
-            receptor: file.inputs.receptor,
-            ligand: file.inputs.ligand,
-            native: file.inputs.native,
-            options: file.options,
-        })
+        serde_json::from_slice(&text).map_err(malformed)
     }
 
     /// Whether this very program wrote it.
@@ -125,23 +116,20 @@ impl RecordedRun {
 
     /// Whether it is the same request: files of the same content (wherever they lie), the same chains of them, and
     /// the same options except those of the machine.
-    pub fn is_same_request(
-        &self,
-        [receptor, ligand]: [&InputRecord; 2],
-        native: Option<&NativeRecord>,
+    pub fn is_same_request<'a>(
+        &'a self,
+        inputs: [&'a InputRecord; 2],
+        native: Option<&'a NativeRecord>,
         options: &DockOptions,
     ) -> bool {
-        let own = self.native.as_ref().map(NativeRecord::files);
-        let other = native.map(NativeRecord::files);
-        let natives = match (&own, &other) {
-            (Some(own), Some(other)) => {
-                own.len() == other.len() && own.iter().zip(other).all(|(a, b)| a.is_like(b))
-            }
-            (own, other) => own.is_none() && other.is_none(),
+        let files = |pair: [&'a InputRecord; 2], native: Option<&'a NativeRecord>| {
+            let natives = native.map_or(Vec::new(), NativeRecord::files);
+            pair.into_iter().chain(natives).collect::<Vec<_>>()
         };
-        self.receptor.is_like(receptor)
-            && self.ligand.is_like(ligand)
-            && natives
+        let own = files(self.inputs.pair(), self.inputs.native.as_ref());
+        let other = files(inputs, native);
+        own.len() == other.len()
+            && own.iter().zip(other).all(|(own, other)| own.is_like(other))
             && self.options
                 == options.changed(|options| options.machine = MachineOptions::default())
     }

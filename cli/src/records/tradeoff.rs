@@ -1,18 +1,12 @@
 //! `tradeoff.csv` and `tradeoff.json`: the measurements of a sweep, one row or object per setting.
 
-use std::collections::BTreeMap;
 use std::io;
 
 use serde_json::{Map, Value, json};
 
-use crate::records::joined;
 use crate::tables::{Column, field, object};
-use crate::tradeoff::advice::Advice;
 use crate::tradeoff::{Measured, Tradeoff};
-use knotdock::options::DockOptions;
 use knotdock::options::definition::name_of;
-use knotdock::output::records::manifest::{Inputs, Machine};
-use knotdock::output::records::program::Program;
 
 /// Number of the layout of `tradeoff.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 2;
@@ -101,10 +95,6 @@ fn columns(run: &Measured) -> Map<String, Value> {
     columns
 }
 
-/// Writes the table to a stream.
-///
-/// # Errors
-/// Those of the stream.
 pub fn write_table(tradeoff: &Tradeoff, stream: &mut dyn io::Write) -> io::Result<()> {
     // No cell holds text from other sources, so none is quoted: `--rotations 96` can be copied.
     let mut writer = csv::Writer::from_writer(stream);
@@ -118,45 +108,12 @@ pub fn write_table(tradeoff: &Tradeoff, stream: &mut dyn io::Write) -> io::Resul
     writer.flush()
 }
 
-/// Parts of `tradeoff.json`.
-pub struct TradeoffParts<'a> {
-    /// The input files.
-    pub inputs: &'a Inputs,
-    /// The default's options.
-    pub options: &'a DockOptions,
-    /// The measured settings.
-    pub tradeoff: &'a Tradeoff,
-    /// The recommended setting.
-    pub advice: Option<&'a Advice>,
-    /// SHA-256 of each other file, by its name.
-    pub files: BTreeMap<String, String>,
-    /// Report on the native's matching, or why it does not match, if there is one.
-    pub matching: Option<Value>,
-    /// Where it ran.
-    pub machine: Machine,
-}
-
-/// `tradeoff.json` of a finished sweep.
-pub fn record(parts: &TradeoffParts) -> Value {
-    let mut options = json!(parts.options);
-    // A sweep writes no run.
-    if let Some(options) = options.as_object_mut() {
-        options.remove("output");
-    }
-    let settings = parts.tradeoff.measured.iter().map(columns);
-    joined([
-        json!({ "schema": SCHEMA }),
-        json!(Program::this()),
-        json!({
-            "inputs": parts.inputs,
-            "options": options,
-            "agreement_radius": parts.tradeoff.radius,
-            "settings": settings.collect::<Vec<_>>(),
-            "refused": parts.tradeoff.refused,
-            "advice": parts.advice,
-            "files": parts.files,
-            "match": parts.matching,
-            "machine": parts.machine,
-        }),
-    ])
+/// The measured settings as JSON objects.
+pub fn settings(tradeoff: &Tradeoff) -> Value {
+    tradeoff
+        .measured
+        .iter()
+        .map(columns)
+        .map(Value::Object)
+        .collect()
 }

@@ -1,11 +1,11 @@
 //! Names and formats of the columns of `poses.csv` in a report.
 
 use csv::StringRecord;
-use knotdock_scoring::terms::effect::Effect;
-use knotdock_scoring::terms::pose::POSE_TERMS;
 use serde::Serialize;
 
-/// A column as a report shows it.
+use knotdock_scoring::terms::effect::Effect;
+use knotdock_scoring::terms::pose::POSE_TERMS;
+
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct ShownColumn {
     /// Its name in the file.
@@ -20,8 +20,7 @@ pub(super) struct ShownColumn {
     pub main: bool,
 }
 
-/// Columns with a description, one per line: name, label, help, decimals (`-` of text), and whether it is shown at
-/// first.
+/// Columns, one per line: name, label, help, decimals (`-` for text), and whether it is shown at first.
 const DESCRIBED: &str = "\
 rank|rank|Rank: 1 is the best|0|main
 score|score|What orders the rows: of a cluster, its poses together|1|main
@@ -44,7 +43,6 @@ receptor_model|receptor model|Conformation of the receptor|-|main
 ligand_model|ligand model|Conformation of the ligand|-|main
 other_copies|other copies|Contacts with further copies of a ring|1|";
 
-/// The description of a column, if it has one.
 fn described(name: &str) -> Option<ShownColumn> {
     DESCRIBED.lines().find_map(|line| {
         let mut parts = line.split('|');
@@ -60,7 +58,6 @@ fn described(name: &str) -> Option<ShownColumn> {
     })
 }
 
-/// The column of a name.
 pub(super) fn shown(name: &str) -> ShownColumn {
     described(name).unwrap_or_else(|| ShownColumn {
         name: name.to_owned(),
@@ -75,8 +72,7 @@ pub(super) fn shown(name: &str) -> ShownColumn {
     })
 }
 
-/// The columns of a table of any kind: those of `main` are shown at first. Its format follows from its
-/// fields.
+/// Columns of any table, formatted by their fields; those of `main` are shown at first.
 pub(super) fn of_table(
     header: &StringRecord,
     records: &[StringRecord],
@@ -113,7 +109,6 @@ fn digits_of<'a>(fields: impl Iterator<Item = &'a str>) -> Option<usize> {
     Some((2 - middle.log10().floor() as i32).clamp(0, 8) as usize)
 }
 
-/// Whether a column places the ligand.
 fn is_placement(name: &str) -> bool {
     ["qw", "qx", "qy", "qz", "tx", "ty", "tz"].contains(&name)
 }

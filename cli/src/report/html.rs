@@ -26,13 +26,9 @@ const SCRIPTS: [&str; 10] = [
 const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'; \
                       img-src data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'";
 
-/// A page to be.
 pub(super) struct Page<'a> {
-    /// Title.
     pub title: String,
-    /// Sections as HTML.
     pub sections: Vec<String>,
-    /// Data of the scripts.
     pub data: &'a Value,
     /// The library of the view, if it is shown.
     pub viewer: Option<&'a Viewer>,
@@ -77,7 +73,6 @@ impl Page<'_> {
     }
 }
 
-/// A script element that holds packed bytes.
 fn script(id: &str, packed: &str) -> String {
     format!("<script type=\"text/plain\" id=\"{id}\">{packed}</script>\n")
 }
@@ -98,7 +93,6 @@ pub(super) fn escaped(text: &str) -> String {
     escaped
 }
 
-/// A section with a heading.
 pub(super) fn section(id: &str, heading: &str, inner: &str) -> String {
     format!(
         "<section id=\"{id}\" aria-labelledby=\"{id}-heading\">\n<h2 id=\"{id}-heading\">{}</h2>\n{inner}</section>\n",
@@ -106,7 +100,6 @@ pub(super) fn section(id: &str, heading: &str, inner: &str) -> String {
     )
 }
 
-/// Sentences as a paragraph.
 pub(super) fn paragraph(sentences: &[String]) -> String {
     format!("<p>{}</p>\n", escaped(&sentences.join(" ")))
 }

@@ -1,7 +1,6 @@
 //! Reports of batches, ensembles and sweeps, from the files of their directories: a table of results, each perhaps with
 //! its own page.
 
-use knotdock_structures::Error;
 use std::fmt::Display;
 use std::fs;
 use std::path::Path;
@@ -11,7 +10,7 @@ use base64::engine::general_purpose::STANDARD;
 use csv::StringRecord;
 use serde_json::{Value, json};
 
-use crate::records::ensemble_record::{MEMBERS, RECORD};
+use crate::records::{ENSEMBLE_RECORD, MEMBERS};
 use crate::report::columns::of_table;
 use crate::report::html::{Page, escaped, paragraph, section};
 use crate::report::shown::rows;
@@ -21,6 +20,7 @@ use knotdock::bounded_read::{MAX_POSES, MAX_RECORD, read_bounded_file};
 use knotdock::output::files::file_error;
 use knotdock::output::files::seal::REPORT;
 use knotdock::table_text::cells::unquoted_row;
+use knotdock_structures::Error;
 
 /// A file of a directory that cannot be read, with its fault.
 fn unreadable(path: &Path, fault: impl Display) -> Error {
@@ -31,25 +31,21 @@ fn unreadable(path: &Path, fault: impl Display) -> Error {
     )
 }
 
-/// Kinds of directories that hold several runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Listed {
-    /// Pairs of a batch.
+pub enum DirectoryKind {
     Batch,
-    /// Members of an ensemble.
     Ensemble,
-    /// Settings of a sweep.
     Tradeoff,
 }
 
-impl Listed {
+impl DirectoryKind {
     /// The kind of a directory, if it is one of these.
-    pub fn in_directory(directory: &Path) -> Option<Self> {
+    pub fn of(directory: &Path) -> Option<Self> {
         if directory.join("run.json").is_file() {
             return None;
         }
         let kinds = [
-            (RECORD, Self::Ensemble),
+            (ENSEMBLE_RECORD, Self::Ensemble),
             ("tradeoff.json", Self::Tradeoff),
             (RESULTS, Self::Batch),
         ];
@@ -59,11 +55,7 @@ impl Listed {
         found.map(|(_, kind)| kind)
     }
 
-    /// The page of a directory, made of files in a folder, which may be where they are staged; `name` is what the directory
-    /// is called.
-    ///
-    /// # Errors
-    /// [`Error`] if a file cannot be read.
+    /// The page of a directory named `name`, from files in a folder, perhaps a staging folder.
     pub fn report(self, directory: &Path, files: &Path, name: &str) -> Result<String, Error> {
         let report = match self {
             Self::Batch => batch(directory, name)?,
@@ -168,7 +160,7 @@ fn batch(directory: &Path, name: &str) -> Result<ListReport, Error> {
 }
 
 fn ensemble(directory: &Path, files: &Path, name: &str) -> Result<ListReport, Error> {
-    let record = record(&files.join(RECORD))?;
+    let record = record(&files.join(ENSEMBLE_RECORD))?;
     let table = table(&files.join("poses.csv"))?;
     let size = |side: &str| record[side].as_array().map_or(0, Vec::len);
     let members = record["members"].as_array().map_or(0, Vec::len);
@@ -226,26 +218,21 @@ fn tradeoff(files: &Path, name: &str) -> Result<ListReport, Error> {
     })
 }
 
-/// Most rows that a list shows.
-const MAX_LISTED: usize = 10_000;
+const MAX_LIST_ROWS: usize = 10_000;
 
-/// A table of results, and sentences about it.
 struct ListReport {
-    /// Title of the page.
     title: String,
     /// Sentences before the table.
     sentences: Vec<String>,
     /// Caption of the table.
     caption: &'static str,
-    /// Names of its columns.
     header: StringRecord,
-    /// Its rows.
     records: Vec<StringRecord>,
     /// Columns that are shown at first, with blanks between them.
     main: &'static str,
     /// The page of each row, from the directory of the report.
     links: Vec<Option<String>>,
-    /// A picture as SVG, and what it shows.
+    /// A picture as SVG, and its caption.
     picture: Option<(Vec<u8>, &'static str)>,
 }
 
@@ -253,11 +240,11 @@ impl ListReport {
     /// The page, whole.
     fn text(mut self) -> String {
         let all = self.records.len();
-        if all > MAX_LISTED {
+        if all > MAX_LIST_ROWS {
             self.sentences.push(format!(
-                "The table shows the first {MAX_LISTED} of {all} rows."
+                "The table shows the first {MAX_LIST_ROWS} of {all} rows."
             ));
-            self.records.truncate(MAX_LISTED);
+            self.records.truncate(MAX_LIST_ROWS);
         }
         let main: Vec<&str> = self.main.split_whitespace().collect();
         let columns = of_table(&self.header, &self.records, &main);

@@ -1,15 +1,207 @@
-//! The report of one run.
+//! The parts of a run's report, and the data of its scripts, as JSON.
+//!
+//! | entry | what |
+//! |---|---|
+//! | `sides` | names of the two bodies |
+//! | `columns`, `rows` | the table: how each column is shown, and its fields |
+//! | `terms` | columns that add up to the pose score |
+//! | `placed` | of each row, what moves each placed body: qw, qx, qy, qz, tx, ty, tz |
+//! | `bodies` | receptor and ligand: text of a structure, or vertices and triangles |
+//! | `contacts` | of each row a text, five numbers per pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
+//! | `shares` | of each side, clusters that touch each residue; `counted` of them were looked at |
+//! | `chains` | names of chains in complexes |
 
-use crate::report::MAX_ROWS;
+use std::collections::HashMap;
+use std::fmt::Write as _;
+
+use serde_json::{Value, json};
+
+use crate::report::columns::{ShownColumn, is_term, shown};
 use crate::report::html::{Page, section};
-use crate::report::run_data::{ReportBodies, RunReport};
-use crate::report::shown::LACKING;
+use crate::report::shown::{LACKING, placement, rounded, solid};
 use crate::report::viewer::Viewer;
-use crate::report::{run_cost, run_data, run_words};
+use crate::report::{MAX_ROWS, run_cost, run_words};
+use knotdock::interface::{Contact, ResidueName, heavy_residues};
+use knotdock::options::DockOptions;
+use knotdock::output::run_contacts::RunContacts;
+use knotdock::output::run_folder::Bodies;
+use knotdock::output::tables::poses::PoseTable;
+use knotdock::pose_space::arrangement::Arrangement;
+use knotdock_structures::molecule::{Format, Molecule, ResidueSelection, fits, write_renamed};
+
+/// A finished run, as it is shown.
+pub struct RunReport<'a> {
+    pub record: &'a Value,
+    pub options: &'a DockOptions,
+    pub table: &'a PoseTable,
+    pub bodies: Bodies<'a>,
+    /// Contacts of molecules in the poses of the table.
+    pub contacts: Option<&'a RunContacts<'a>>,
+    /// Its directory as commands would name it.
+    pub directory: &'a str,
+}
+
+/// The data, with the first `count` rows.
+pub(super) fn data(report: &RunReport, count: usize) -> Value {
+    let table = report.table;
+    let columns: Vec<ShownColumn> = table.header.iter().map(shown).collect();
+    let rows: Vec<Vec<Value>> = (0..count)
+        .map(|row| {
+            columns
+                .iter()
+                .map(|column| cell(report, row, column))
+                .collect()
+        })
+        .collect();
+    let arrangement = Arrangement::from(report.options.search.symmetry);
+    let placed = table.rows().iter().take(count).map(|row| {
+        let images = arrangement.images(&row.pose).unwrap_or_default();
+        images.iter().map(placement).collect::<Vec<_>>()
+    });
+    let is_shown_term = |column: &&ShownColumn| is_term(&column.name);
+    let terms = columns.iter().filter(is_shown_term);
+    let mut data = json!({
+        "kind": "run",
+        "sides": match arrangement.is_ring() {
+            true => ["molecule", "next copy"],
+            false => ["receptor", "ligand"],
+        },
+        "terms": terms.map(|column| column.name.as_str()).collect::<Vec<_>>(),
+        "columns": columns,
+        "rows": rows,
+        "placed": placed.collect::<Vec<_>>(),
+        "chains": report.record["chains"],
+    });
+    match (report.bodies, report.contacts) {
+        (Bodies::Molecules(molecules), Some(contacts)) => {
+            let sides = contacts.finder().residues();
+            data["bodies"] = (0..2)
+                .map(|side| molecule(report, side, molecules[side], sides[side]))
+                .collect();
+            let rows = contacts.rows().iter().take(count).map(|row| flat(row));
+            data["contacts"] = rows.collect();
+            let shares = contacts.shares();
+            data["shares"] = shares
+                .iter()
+                .map(|side| side.iter().map(|share| share.clusters).collect::<Value>())
+                .collect();
+            data["counted"] = json!(contacts.counted());
+        }
+        (Bodies::Molecules(_), None) => {}
+        (Bodies::Solids(surfaces), _) => data["bodies"] = surfaces.iter().map(solid).collect(),
+    }
+    data
+}
+
+/// A field of the table, with the digits that are shown and four more.
+fn cell(report: &RunReport, row: usize, column: &ShownColumn) -> Value {
+    let field = report.table.field(row, &column.name).unwrap_or_default();
+    match (field, column.digits) {
+        ("", _) => Value::Null,
+        (text, None) => json!(text),
+        (text, Some(digits)) => match text.parse::<f64>() {
+            Ok(value) if value.is_finite() => json!(rounded(value, digits as i32 + 4)),
+            _ => json!(text),
+        },
+    }
+}
+
+/// Contacts as text: as values of JSON they would take ten times the memory.
+fn flat(contacts: &[Contact]) -> String {
+    let mut text = String::new();
+    for contact in contacts {
+        let [first, second] = contact.residues;
+        let distance = (100.0 * contact.distance).round();
+        let (bonds, bridge) = (contact.hydrogen_bonds, u8::from(contact.salt_bridge));
+        let space = if text.is_empty() { "" } else { " " };
+        // Writing to memory does not fail.
+        let _ = write!(text, "{space}{first} {second} {distance} {bonds} {bridge}");
+    }
+    text
+}
+
+fn molecule(
+    report: &RunReport,
+    side: usize,
+    molecule: &Molecule,
+    residues: &[ResidueName],
+) -> Value {
+    let format = match fits(Format::Pdb, molecule) {
+        Ok(()) => Format::Pdb,
+        Err(_) => Format::Mmcif,
+    };
+    let mut text = Vec::new();
+    // Writing to memory does not fail, and the format fits.
+    let written = write_renamed(&mut text, format, molecule, &[]);
+    assert!(written.is_ok(), "{written:?}");
+    let names: Vec<_> = residues
+        .iter()
+        .map(|residue| [&residue.chain, &residue.number, &residue.name])
+        .collect();
+    json!({
+        "format": format.extension(),
+        "text": String::from_utf8_lossy(&text),
+        "residues": names,
+        "residue_of_atom": residue_of_atom(molecule),
+        "active": chosen(molecule, &active(report, side)),
+        "blocked": chosen(molecule, &blocked(report, side)),
+    })
+}
+
+/// The residue of each atom; for a hydrogen, that of the heavy atoms of its name, if there are any.
+fn residue_of_atom(molecule: &Molecule) -> Vec<Option<usize>> {
+    let mut residues = vec![None; molecule.atoms.len()];
+    let mut of_name = HashMap::new();
+    for (residue, atoms) in heavy_residues(molecule).into_iter().enumerate() {
+        for at in atoms {
+            residues[at] = Some(residue);
+            of_name.insert(ResidueName::of(&molecule.atoms[at]), residue);
+        }
+    }
+    for (atom, residue) in molecule.atoms.iter().zip(&mut residues) {
+        *residue = residue.or_else(|| of_name.get(&ResidueName::of(atom)).copied());
+    }
+    residues
+}
+
+/// Residues of a side that poses are rewarded for touching: the user's, or the active site of a peptidase.
+pub(super) fn active(report: &RunReport, side: usize) -> Vec<ResidueSelection> {
+    let restraints = &report.options.restraints;
+    let named = [&restraints.active_receptor, &restraints.active_ligand][side].clone();
+    let site = &report.record["active_site"];
+    let sites = match site["partner"].as_str() == Some(["receptor", "ligand"][side]) {
+        true => site["sites"].as_array(),
+        false => None,
+    };
+    let residues = sites.into_iter().flatten().flat_map(|site| {
+        let residues = site["residues"].as_array().into_iter().flatten();
+        residues.filter_map(|residue| residue.as_str()?.parse().ok())
+    });
+    named.into_iter().chain(residues).collect()
+}
+
+/// Residues of a side that are kept free of contact.
+fn blocked(report: &RunReport, side: usize) -> Vec<ResidueSelection> {
+    let restraints = &report.options.restraints;
+    let named = [&restraints.block_receptor, &restraints.block_ligand][side];
+    named.iter().cloned().collect()
+}
+
+fn chosen(molecule: &Molecule, selections: &[ResidueSelection]) -> Vec<usize> {
+    let masks = selections
+        .iter()
+        .filter_map(|selection| molecule.selected(selection).ok());
+    let masks: Vec<Vec<bool>> = masks.collect();
+    let residues = heavy_residues(molecule).into_iter().enumerate();
+    let is_chosen = |atoms: &[usize]| masks.iter().any(|mask| atoms.iter().any(|&at| mask[at]));
+    residues
+        .filter(|(_, atoms)| is_chosen(atoms))
+        .map(|(residue, _)| residue)
+        .collect()
+}
 
 impl RunReport<'_> {
-    /// The page, whole: of large molecules with fewer rows, so that it stays below 6 MB. Without a viewer it says
-    /// how to get the view.
+    /// The whole page, with fewer rows of large molecules to stay below 6 MB.
     pub fn text(&self, viewer: Option<&Viewer>) -> String {
         let mut rows = self.table.rows().len().min(MAX_ROWS);
         loop {
@@ -21,9 +213,8 @@ impl RunReport<'_> {
         }
     }
 
-    /// The page with `rows` rows.
     fn page(&self, rows: usize, viewer: Option<&Viewer>) -> String {
-        let data = run_data::data(self, rows);
+        let data = data(self, rows);
         let explorer = include_str!("page/explorer.html");
         let lacking = match viewer {
             Some(_) => "",
@@ -33,7 +224,7 @@ impl RunReport<'_> {
             section("summary", "Summary", &run_words::summary(self, rows)),
             section("poses", "Poses", &explorer.replace("{{lacking}}", lacking)),
         ];
-        if matches!(self.bodies, ReportBodies::Molecules(..)) {
+        if self.contacts.is_some() {
             let consensus = include_str!("page/consensus.html");
             sections.push(section(
                 "consensus",

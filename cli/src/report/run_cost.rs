@@ -4,9 +4,9 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
+use crate::messages::shown::shell_word;
 use crate::report::html::{escaped, table};
-use crate::report::run_data::RunReport;
-use crate::shell_word::shell_word;
+use crate::report::run::RunReport;
 use knotdock::options::definition::Definition;
 use knotdock::options::definitions;
 
@@ -71,7 +71,7 @@ pub(super) fn cost(report: &RunReport) -> String {
     let grid: Vec<String> = items(&plan["grid"]).map(words).collect();
     let _ = writeln!(
         html,
-        "<p>Orientations lie at most {:.1} degrees from one that was searched. The grid is {} at {} {}. The run used {} \
+        "<p>Orientations are at most {:.1} degrees from one that was searched. The grid is {} at {} {}. The run used {} \
          of {} hardware threads{}.</p>",
         plan["covering_radius_degrees"].as_f64().unwrap_or(f64::NAN),
         grid.join(" × "),

@@ -5,8 +5,7 @@ use std::fmt::Write as _;
 use serde_json::Value;
 
 use crate::report::html::{escaped, paragraph};
-use crate::report::run_data::RunReport;
-use crate::report::run_data::active;
+use crate::report::run::{RunReport, active};
 use crate::tables::report::counted;
 use knotdock::table_text::named_columns::listed;
 
@@ -38,19 +37,11 @@ pub(super) fn summary(report: &RunReport, shown: usize) -> String {
             .iter()
             .filter_map(|chain| chain["name"].as_str())
             .collect();
-        let atoms = entry["atoms"].as_u64();
-        match (atoms, names.len()) {
-            (Some(atoms), 1) => format!(
-                "{} (chain {}, {atoms} atoms)",
-                file_name(&entry["path"]),
-                names[0]
-            ),
-            (Some(atoms), _) => format!(
-                "{} (chains {}, {atoms} atoms)",
-                file_name(&entry["path"]),
-                names.join(", ")
-            ),
-            (None, _) => file_name(&entry["path"]).to_owned(),
+        let file = file_name(&entry["path"]);
+        let chains = if names.len() == 1 { "chain" } else { "chains" };
+        match entry["atoms"].as_u64() {
+            Some(atoms) => format!("{file} ({chains} {}, {atoms} atoms)", names.join(", ")),
+            None => file.to_owned(),
         }
     };
     sentences.push(match report.options.search.symmetry {
@@ -123,19 +114,18 @@ fn found(report: &RunReport, shown: usize) -> String {
                        clusters, not at the first alone."
             .to_owned(),
         (true, None) => "By the known complex no row is acceptable or better.".to_owned(),
-        (true, Some(&first)) => format!(
-            "By the known complex the first acceptable row has rank {}, and {} of the first ten rows {} acceptable or better.",
-            report.table.rows()[first].rank,
-            good.iter().filter(|&&row| row < 10).count(),
-            match good.iter().filter(|&&row| row < 10).count() {
-                1 => "is",
-                _ => "are",
-            }
-        ),
+        (true, Some(&first)) => {
+            let rank = report.table.rows()[first].rank;
+            let among_ten = good.iter().filter(|&&row| row < 10).count();
+            let are = if among_ten == 1 { "is" } else { "are" };
+            format!(
+                "By the known complex the first acceptable row has rank {rank}, and {among_ten} of the first ten rows \
+                 {are} acceptable or better."
+            )
+        }
     }
 }
 
-/// Warnings of the readers.
 fn warnings(record: &Value) -> String {
     let mut items = String::new();
     for side in ["receptor", "ligand"] {

@@ -1,11 +1,11 @@
 //! Fields, placements and surfaces as the scripts of a report read them.
 
 use csv::StringRecord;
-use knotdock_scoring::se3::Pose;
 use serde_json::{Value, json};
 
 use crate::report::columns::ShownColumn;
 use knotdock::output::files::assemblies::Surface;
+use knotdock_scoring::se3::Pose;
 
 /// Text in place of the view, if there is none.
 pub(super) const LACKING: &str = "<p>This report has no three-dimensional view: the program was built without it. \
@@ -13,7 +13,6 @@ pub(super) const LACKING: &str = "<p>This report has no three-dimensional view: 
                                   node_modules/3dmol</code> of <code>knotdock report</code>, <code>collide</code>, \
                                   <code>obstacle</code> and <code>morph</code> adds it.</p>";
 
-/// Most triangles of a surface that is shown.
 const MAX_TRIANGLES: usize = 100_000;
 
 /// The rows of a table as its columns show them.

@@ -1,7 +1,6 @@
 //! Reports of solids: one stands and another moves through a table of poses, or two sets bound a result.
 
 use csv::StringRecord;
-use knotdock_scoring::se3::Pose;
 use serde_json::{Value, json};
 
 use crate::report::MAX_ROWS;
@@ -10,22 +9,16 @@ use crate::report::html::{Page, paragraph, section};
 use crate::report::shown::{LACKING, placement, rows, solid};
 use crate::report::viewer::Viewer;
 use knotdock::output::files::assemblies::Surface;
+use knotdock_scoring::se3::Pose;
 
-/// Two solids to look at.
 pub struct SolidsReport<'a> {
-    /// Title of the page.
     pub title: String,
-    /// Sentences on them.
     pub sentences: Vec<String>,
-    /// Names of the two.
     pub names: [&'a str; 2],
     /// Their surfaces, each in the frame of its file.
     pub surfaces: [Surface<'a>; 2],
-    /// Caption of the table.
     pub caption: &'a str,
-    /// Names of its columns.
     pub header: StringRecord,
-    /// Its rows.
     pub records: Vec<StringRecord>,
     /// Columns that are shown at first.
     pub main: &'a [&'a str],
@@ -37,7 +30,7 @@ impl SolidsReport<'_> {
     /// The page, whole. Without a viewer it says how to get the view.
     pub fn text(mut self, viewer: Option<&Viewer>) -> String {
         let all = self.records.len();
-        assert_eq!(all, self.poses.len(), "a pose a row");
+        assert_eq!(all, self.poses.len(), "one pose per row");
         if all > MAX_ROWS {
             self.sentences.push(format!(
                 "This report shows the first {MAX_ROWS} of {all} rows."

@@ -1,19 +1,37 @@
 //! The library of the three-dimensional view: 3Dmol.js (Rego and Koes, Bioinformatics 31 (2015) 1322-1324), as npm has it.
 
-use knotdock_structures::Error;
 use std::io::{self, Write as _};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
+use clap::Args;
 use flate2::Compression;
 use flate2::write::GzEncoder;
 
 use knotdock::bounded_read::read_bounded;
 use knotdock::output::files::file_error;
+use knotdock_structures::Error;
 
-/// Most bytes of a file of the library.
+/// The place of the library.
+#[derive(Args, Clone, Debug)]
+pub struct ViewerArguments {
+    /// Folder of npm's package 3dmol, for the three-dimensional view of the report [default: what the program was built
+    /// with].
+    #[arg(long, value_name = "DIR")]
+    viewer: Option<PathBuf>,
+}
+
+impl ViewerArguments {
+    pub fn read(&self) -> Result<Option<Viewer>, Error> {
+        match &self.viewer {
+            Some(folder) => Viewer::read(folder).map(Some),
+            None => Ok(Viewer::embedded().cloned()),
+        }
+    }
+}
+
 const MAX_BYTES: u64 = 4 << 20;
 
 /// The library, packed, with its licence.
@@ -31,16 +49,12 @@ impl Viewer {
         }
     }
 
-    /// The library that this program was built with, if it was.
     pub fn embedded() -> Option<&'static Self> {
         static EMBEDDED: OnceLock<Option<Viewer>> = OnceLock::new();
         EMBEDDED.get_or_init(embedded).as_ref()
     }
 
     /// The library in the folder of npm's package.
-    ///
-    /// # Errors
-    /// [`Error`] if one of its files cannot be read.
     pub fn read(package: &Path) -> Result<Self, Error> {
         let text = |name: &str| {
             let path = package.join(name);

@@ -1,34 +1,30 @@
 //! The shards of a batch put together, in the order of the table of pairs.
 
-use knotdock::output::files::file_error;
-use knotdock_structures::Error;
 use std::collections::hash_map::Entry;
 use std::collections::{BTreeMap, HashMap};
 use std::fs::{self, File};
 use std::io;
 use std::path::{Path, PathBuf};
 
-use super::part::{Index, Range};
+use super::part::{Index, PairFiles, Range};
 use super::poses_file::{copy_range, header};
 use super::record::BatchRecord;
 use super::{POSES, SHARDS, Shard};
 use crate::tables::batch_results::{RESULTS, head};
+use knotdock::output::files::file_error;
 use knotdock::output::files::folder::{make_folder, open_own};
 use knotdock::output::files::whole_file::{StagedFile, is_link, leftovers};
+use knotdock_structures::Error;
 
 /// Files that are open at the same time.
 const OPEN: usize = 128;
 
-/// The result of a merge.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Merged {
-    /// The shards that were there.
     pub shards: Vec<Shard>,
     /// Pairs of the batch, those that were docked, and those that failed.
     pub counts: [usize; 3],
-    /// The table of results.
     pub results: PathBuf,
-    /// The file of poses, if poses are kept.
     pub poses: Option<PathBuf>,
     /// Files that ended commands left beside them.
     pub leftovers: Vec<PathBuf>,
@@ -37,18 +33,12 @@ pub struct Merged {
 /// A pair of the batch: its shard, and the ranges of its row and its poses in the shard's files.
 struct MergedPair {
     shard: usize,
-    is_done: bool,
-    row: Range,
-    poses: Option<Range>,
+    files: PairFiles,
 }
 
 /// Merges the shards in some directories of a batch into `out`: `results.csv`, and `poses.csv.gz` where poses are kept.
 /// The bytes do not depend on how many shards there are, on their places or their order. With `partial` pairs and
 /// shards may be missing. Other files of these names are replaced only with `force`.
-///
-/// # Errors
-/// [`Error`] when there is no shard, when shards are of different batches or twice there, when one is missing or not
-/// done, and when a file cannot be read or written.
 pub fn merge(
     directories: &[PathBuf],
     out: &Path,
@@ -85,9 +75,7 @@ pub fn merge(
             if let Some(pair) = found.remove(name) {
                 let merged = MergedPair {
                     shard: shards.len(),
-                    is_done: pair.is_done,
-                    row: pair.row,
-                    poses: pair.poses,
+                    files: pair,
                 };
                 pairs.insert(shard.row(place), merged);
             }
@@ -140,10 +128,10 @@ pub fn merge(
         Ok::<_, Error>((path, staged))
     };
     let left = [RESULTS, POSES].map(|name| leftovers(&out.join(name)));
-    let mut written = vec![copied(RESULTS, &head(), |pair| Some(pair.row))?];
+    let mut written = vec![copied(RESULTS, &head(), |pair| Some(pair.files.row))?];
     if record.keep.has_poses() {
         let header = header().map_err(|error| file_error::writing(out, error))?;
-        written.push(copied(POSES, &header, |pair| pair.poses)?);
+        written.push(copied(POSES, &header, |pair| pair.files.poses)?);
     }
     // Neither takes its place before both may.
     let mut paths = Vec::new();
@@ -162,7 +150,7 @@ pub fn merge(
         paths.push(path);
     }
     changed.into_iter().try_for_each(StagedFile::place)?;
-    let done = pairs.values().filter(|pair| pair.is_done).count();
+    let done = pairs.values().filter(|pair| pair.files.is_done).count();
     let mut paths = paths.into_iter();
     Ok(Merged {
         leftovers: left.concat(),

@@ -1,7 +1,5 @@
 //! The growing files of a batch or a shard: opening them indexes their pairs, and each pair is added whole.
 
-use knotdock::output::files::file_error;
-use knotdock_structures::Error;
 use std::collections::HashMap;
 use std::fs::File;
 use std::io::{self, BufReader};
@@ -12,9 +10,11 @@ use super::record::BatchRecord;
 use super::{ATTEMPTS, POSES, PosesOfPair};
 use crate::tables::batch_results::{PairResult, RESULTS, head, name_and_status, row};
 use knotdock::output::files::appended::AppendedFile;
+use knotdock::output::files::file_error;
 use knotdock::output::files::folder::{next_line, open_own};
 use knotdock::output::files::whole_file::StagedFile;
 use knotdock::table_text::cells::unquoted;
+use knotdock_structures::Error;
 
 /// A batch's or a shard's files, open for further pairs.
 #[derive(Debug)]
@@ -23,20 +23,14 @@ pub struct Part {
     results: AppendedFile,
     poses: Option<AppendedFile>,
     attempts: AppendedFile,
-    /// Each pair that was docked or failed.
     pairs: HashMap<String, PairFiles>,
-    /// How often each pair was started.
     started: HashMap<String, usize>,
     /// Pairs that were listed as done and have to be docked again, since a file is damaged.
     pub lost: usize,
 }
 
 impl Part {
-    /// Opens the files in a folder, or makes them. If they end in the middle of a pair, that pair's part is cut off;
-    /// so is everything after a damaged place.
-    ///
-    /// # Errors
-    /// [`Error`] when a file cannot be read or written, or is another's.
+    /// Opens or makes the files in a folder; incomplete pairs and everything after damage is cut off.
     pub fn open(folder: &Path, record: &BatchRecord) -> Result<Self, Error> {
         let has_poses = record.keep.has_poses();
         let found = Index::of(folder, has_poses)?;
@@ -74,7 +68,6 @@ impl Part {
         self.pairs.get(name).map(|pair| pair.is_done)
     }
 
-    /// How often a pair was started.
     pub fn attempts(&self, name: &str) -> usize {
         self.started.get(name).copied().unwrap_or(0)
     }
@@ -85,10 +78,6 @@ impl Part {
         [done, self.pairs.len() - done]
     }
 
-    /// Notes that a pair is started.
-    ///
-    /// # Errors
-    /// [`Error`].
     pub fn start(&mut self, name: &str) -> Result<(), Error> {
         self.attempts.append(format!("{name}\n").as_bytes())?;
         *self.started.entry(name.to_owned()).or_insert(0) += 1;
@@ -96,9 +85,6 @@ impl Part {
     }
 
     /// Adds the result of a pair: its poses, if they are kept and it has some, then its row.
-    ///
-    /// # Errors
-    /// [`Error`]; the pair is not there then, and nothing of it is in the way.
     pub fn add(&mut self, result: &PairResult, poses: Option<&PosesOfPair>) -> Result<(), Error> {
         let poses = match (&mut self.poses, poses) {
             (Some(file), Some(poses)) => Some(file.append(poses.bytes())?),
@@ -114,9 +100,6 @@ impl Part {
     }
 
     /// Puts rows and poses in the order of the table, each pair once, when all of them are there.
-    ///
-    /// # Errors
-    /// [`Error`].
     pub fn finish(self, record: &BatchRecord) -> Result<(), Error> {
         let names = record.own.iter().map(|(name, _)| name);
         let pairs: Vec<&PairFiles> = names.filter_map(|name| self.pairs.get(name)).collect();
@@ -151,14 +134,10 @@ fn put_in_order(path: &Path, head: &[u8], parts: &[Range], end: u64) -> Result<(
     sorted.place()
 }
 
-/// A pair in the files of a batch.
 #[derive(Debug)]
 pub(super) struct PairFiles {
-    /// Whether it was docked.
     pub is_done: bool,
-    /// Its row.
     pub row: Range,
-    /// Its poses.
     pub poses: Option<Range>,
 }
 
@@ -172,10 +151,6 @@ pub(super) struct Index {
 }
 
 impl Index {
-    /// Reads the files in a folder, as far as they are whole.
-    ///
-    /// # Errors
-    /// [`Error`] if they cannot be read, or are no files of a batch.
     pub fn of(folder: &Path, has_poses: bool) -> Result<Self, Error> {
         let mut poses = HashMap::new();
         let mut poses_end = 0;
@@ -262,7 +237,6 @@ fn read_lines(path: &Path, mut take: impl FnMut(&[u8], Range) -> bool) -> Result
     Ok(())
 }
 
-/// The first field of a line.
 fn first_field(line: &[u8]) -> String {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)

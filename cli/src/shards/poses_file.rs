@@ -22,9 +22,6 @@ use knotdock::table_text::cells::TableWriter;
 const MAX_TEXT: u64 = 64 << 20;
 
 /// Text as a member: the same bytes for the same text.
-///
-/// # Errors
-/// [`io::ErrorKind::FileTooLarge`] for a text of more than 64 MB.
 fn packed(text: &[u8]) -> io::Result<Vec<u8>> {
     if text.len() as u64 > MAX_TEXT {
         return Err(too_large());
@@ -34,22 +31,19 @@ fn packed(text: &[u8]) -> io::Result<Vec<u8>> {
     encoder.finish()
 }
 
-/// A member of a file.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) struct Member {
-    /// Where it begins and where the next one does, in bytes.
+    /// Its start and that of the next one, in bytes.
     pub range: (u64, u64),
     /// Its first line, without the line end.
     pub first_line: Vec<u8>,
 }
 
-/// Reads the members of a file one by one.
 pub(super) struct Members {
     file: BufReader<File>,
 }
 
 impl Members {
-    /// The members of a file, from its first byte.
     pub fn of(file: File) -> Self {
         Self {
             file: BufReader::with_capacity(1 << 16, file),
@@ -57,9 +51,6 @@ impl Members {
     }
 
     /// The next member; `None` where the file ends or what follows is no whole member.
-    ///
-    /// # Errors
-    /// What the system says about reading, and [`io::ErrorKind::FileTooLarge`] for a member of more than 64 MB.
     pub fn next(&mut self) -> io::Result<Option<Member>> {
         let start = self.file.stream_position()?;
         if self.file.fill_buf()?.is_empty() {
@@ -98,10 +89,6 @@ fn too_large() -> io::Error {
     )
 }
 
-/// Copies a range of bytes of a file.
-///
-/// # Errors
-/// Those of both, and [`io::ErrorKind::UnexpectedEof`] where the file ends before the range.
 pub(super) fn copy_range(
     file: &mut File,
     (start, end): (u64, u64),
@@ -124,23 +111,16 @@ pub struct PosesOfPair(Vec<u8>);
 
 impl PosesOfPair {
     /// The first `count` rows of a table by [`RunTable::wide`].
-    ///
-    /// # Errors
-    /// [`io::ErrorKind::FileTooLarge`] for more than 64 MB of text.
     pub fn new(name: &str, table: &RunTable, count: usize) -> io::Result<Self> {
         member(table.records().take(count), name).map(Self)
     }
 
-    /// Its bytes.
     pub(super) fn bytes(&self) -> &[u8] {
         &self.0
     }
 }
 
 /// The first member: the names of the columns.
-///
-/// # Errors
-/// [`io::ErrorKind::FileTooLarge`] for more than 64 MB of text.
 pub(super) fn header() -> io::Result<Vec<u8>> {
     let further = WIDE_COLUMNS.map(|name| Column {
         name: name.to_owned(),

@@ -1,7 +1,5 @@
 //! `batch.json`: which pairs and options a batch, or a shard of it, is of.
 
-use knotdock::output::files::file_error;
-use knotdock_structures::Error;
 use std::io::Write;
 use std::path::{Path, PathBuf};
 
@@ -10,12 +8,13 @@ use serde::{Deserialize, Serialize};
 use super::{ATTEMPTS, POSES, Shard};
 use crate::tables::batch_results::RESULTS;
 use knotdock::bounded_read::MAX_RECORD;
+use knotdock::output::files::file_error;
 use knotdock::output::files::folder::{make_folder, names_in, read_own};
 use knotdock::output::files::lock::Lock;
 use knotdock::output::files::whole_file::{StagedFile, is_link, leftovers};
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
+use knotdock_structures::Error;
 
-/// Name of the file.
 pub const RECORD: &str = "batch.json";
 /// Name of the lock in the folder.
 const LOCK: &str = ".knotdock-lock";
@@ -49,24 +48,21 @@ pub struct BatchRecord {
     program: String,
     /// Version and commit of the program.
     pub knotdock: String,
-    /// Which shard.
     pub shard: Shard,
     /// Rows of the table of pairs.
     pub pairs: usize,
-    /// SHA-256 of what the table of pairs says.
+    /// SHA-256 of the rows of the table of pairs.
     pub table_sha256: String,
     /// Options of `knotdock dock` for all pairs.
     pub options: Vec<String>,
-    /// What is kept of each pair.
     pub keep: Keep,
     /// Rows that are kept of each pair's table of poses; `None` for all.
     pub rows: Option<usize>,
-    /// Its pairs in the order of the table: each one's name, and a checksum of what its row says.
+    /// Its pairs in the order of the table: name and checksum of the row of each.
     pub own: Vec<(String, String)>,
 }
 
 impl BatchRecord {
-    /// The record of a shard of this program.
     pub fn new(
         shard: Shard,
         pairs: usize,
@@ -99,10 +95,6 @@ impl BatchRecord {
         self.shard.count() == other.shard.count() && of_all(self) == of_all(other)
     }
 
-    /// Reads the record in a folder; `None` where there is none.
-    ///
-    /// # Errors
-    /// [`Error`] when it cannot be read or is no such record.
     pub fn read(folder: &Path) -> Result<Option<Self>, Error> {
         let path = folder.join(RECORD);
         if path.symlink_metadata().is_err() {
@@ -115,11 +107,7 @@ impl BatchRecord {
         })
     }
 
-    /// Takes a folder for this batch or shard: a new or an empty one, or one that has its record. The lock that is held
-    /// until the end, and what ended commands left there.
-    ///
-    /// # Errors
-    /// [`Error`] when the folder is another's, when another command writes to it, and when it cannot be made.
+    /// Takes a new or empty folder, or one with this record; the lock to hold, and leftovers of ended commands.
     pub fn take(&self, folder: &Path) -> Result<(Lock, Vec<PathBuf>), Error> {
         if is_link(folder) {
             return Err(file_error::link(folder));
@@ -153,10 +141,6 @@ impl BatchRecord {
         Ok(names.find(|name| name != LOCK && !is_left(name)))
     }
 
-    /// Writes it into a folder.
-    ///
-    /// # Errors
-    /// [`Error`].
     pub(super) fn write(&self, folder: &Path) -> Result<(), Error> {
         let write = |file: &mut dyn Write| Ok(serde_json::to_writer(file, self)?);
         StagedFile::own(&folder.join(RECORD), write)?.place()

@@ -1,17 +1,16 @@
 //! A folder on a disk that is near, in which the files of a batch grow until it is done.
 
-use knotdock::output::files::file_error;
-use knotdock_structures::Error;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
+use std::{fs, io};
 
 use super::record::{BatchRecord, RECORD};
 use super::{ATTEMPTS, POSES};
 use crate::tables::batch_results::RESULTS;
 use knotdock::output::files::checksum::sha256;
+use knotdock::output::files::file_error;
 use knotdock::output::files::folder::{clear, make_folder, open_own};
 use knotdock::output::files::whole_file::{StagedFile, is_link};
+use knotdock_structures::Error;
 
 /// The growing files, in the order in which they are copied: a row comes after the poses that it stands for.
 const FILES: [&str; 3] = [POSES, RESULTS, ATTEMPTS];
@@ -25,14 +24,11 @@ pub struct Scratch {
 
 impl Scratch {
     /// A folder in `scratch` for the batch of a place. It begins as whichever of the two has gone further.
-    ///
-    /// # Errors
-    /// [`Error`] where a folder of this name is another's, and where a file cannot be read or written.
     pub fn open(scratch: &Path, place: &Path, record: &BatchRecord) -> Result<Self, Error> {
         make_folder(scratch)?;
         let unreadable = |source| file_error::reading(place, source);
         let place = place.canonicalize().map_err(unreadable)?;
-        // Places of the same name are told apart by where they are.
+        // Places of the same name differ in their checksums.
         let sum = sha256(place.to_string_lossy().as_bytes());
         let name = place.file_name().unwrap_or_default().to_string_lossy();
         let folder = scratch.join(format!("knotdock-{}-{name}", &sum[..12]));
@@ -61,15 +57,11 @@ impl Scratch {
         Ok(Self { folder, place })
     }
 
-    /// Where to work.
     pub fn folder(&self) -> &Path {
         &self.folder
     }
 
     /// Copies the files to their place, each whole, and removes them here.
-    ///
-    /// # Errors
-    /// [`Error`]; the files are still here then.
     pub fn copy_out(self) -> Result<(), Error> {
         copy(&self.folder, &self.place)?;
         // What stays is found by the next call, or is in nobody's way.

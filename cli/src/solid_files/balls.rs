@@ -1,26 +1,18 @@
 //! Knots as files: a table (`knots.csv`), a mesh of spheres (OBJ), and pseudo-atoms (PDB).
 
-use knotdock_structures::Error;
 use std::path::Path;
 
-use knotdock_structures::{Ball, Knots};
-
 use knotdock::output::files::whole_file::StagedFile;
+use knotdock_structures::{Ball, Error, Knots};
 
 /// Ways to export balls, by ending.
 pub const EXPORTS: [(&str, ExportBalls); 2] = [("obj", write_mesh), ("pdb", write_pseudo_atoms)];
 
-/// A way to export balls.
 pub type ExportBalls = fn(&Knots, &Path) -> Result<StagedFile, Error>;
 
-/// Header of the table.
 const COLUMNS: &str = "x,y,z,r,weight";
 
-/// Writes the table: a row a knot, in the file's unit, 17 significant digits a number, which read back to the same
-/// double.
-///
-/// # Errors
-/// [`Error`] when the file cannot be made or written.
+/// Writes the table: one row per knot, in the file's unit, with 17 significant digits.
 pub fn write_table(knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
     StagedFile::write(path, |file| {
         writeln!(file, "{COLUMNS}")?;
@@ -38,9 +30,6 @@ pub fn write_table(knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
 }
 
 /// Writes the balls as an OBJ mesh: a sphere of 80 triangles each, inscribed in its ball.
-///
-/// # Errors
-/// [`Error`] when the file cannot be made or written.
 pub fn write_mesh(knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
     let (vertices, triangles) = icosphere();
     StagedFile::write(path, |file| {
@@ -134,9 +123,6 @@ fn icosphere() -> (Vec<[f64; 3]>, Vec<[usize; 3]>) {
 ///
 /// These are HETATM records named `X` of residue `BAL`, one residue for each ball. The radius is in the columns of
 /// the temperature factor and the weight in those of the occupancy.
-///
-/// # Errors
-/// [`Error`] when a coordinate does not fit its columns or the file cannot be written.
 pub fn write_pseudo_atoms(knots: &Knots, path: &Path) -> Result<StagedFile, Error> {
     for (index, center) in knots.centers.iter().enumerate() {
         if let Some(value) = center

@@ -11,9 +11,6 @@ use knotdock::output::files::whole_file::{StagedFile, is_stream};
 use knotdock_structures::Error;
 
 /// The format of the file of an option, by the ending of its name. `formats` lists endings, in small letters.
-///
-/// # Errors
-/// [`Error`] if the file has another ending.
 pub fn format_of<T: Copy>(
     option: &str,
     path: &Path,
@@ -41,9 +38,6 @@ pub fn format_of<T: Copy>(
 }
 
 /// Checks that a picture is named .svg, unless it is a pipe or a device.
-///
-/// # Errors
-/// [`Error`] if it has another ending.
 pub fn check_picture(path: &Path) -> Result<(), Error> {
     match is_stream(path) {
         true => Ok(()),
@@ -51,10 +45,12 @@ pub fn check_picture(path: &Path) -> Result<(), Error> {
     }
 }
 
+/// Writes a text beside its place.
+pub fn write_text(path: &Path, text: &str) -> Result<StagedFile, Error> {
+    StagedFile::write(path, |file| file.write_all(text.as_bytes()))
+}
+
 /// Puts files into their places once all of them are written, and returns their names.
-///
-/// # Errors
-/// [`Error`] if a file cannot be moved.
 pub fn place_all(staged: Vec<(StagedFile, &PathBuf)>) -> Result<Vec<String>, Error> {
     let mut names = Vec::with_capacity(staged.len());
     for (file, path) in staged {

@@ -3,20 +3,21 @@
 //!
 //! The slice is the plane through the middle of the solid across the shortest edge of its bounding box.
 
-use knotdock_structures::Error;
 use std::path::Path;
 
+use rayon::prelude::*;
+
+use crate::plot::chart::Colour;
+use crate::plot::svg::Svg;
+use crate::solid_files::write_text;
+use knotdock::geometry::bracket::{bounds, shifted};
+use knotdock::geometry::obstacle::reduce::reduced;
+use knotdock::output::files::whole_file::StagedFile;
+use knotdock_structures::Error;
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::sampling::Ball;
 use knotdock_structures::sampling::grid::ON_SURFACE;
 use knotdock_structures::sampling::skeletal_density::share;
-use rayon::prelude::*;
-
-use crate::plot::svg::{Colour, Svg};
-use knotdock::geometry::bracket::{bounds, shifted};
-use knotdock::geometry::obstacle::reduce::reduced;
-
-use knotdock::output::files::whole_file::StagedFile;
 
 /// Pixels along the longer edge of a slice.
 const PIXELS: usize = 72;
@@ -34,18 +35,11 @@ const HELD: &str = "fill=\"#d8d8d8\"";
 const SEEN: &str = "fill=\"url(#ball)\" stroke=\"#703010\" stroke-width=\"0.2\"";
 
 /// Writes the picture of `balls` (in the solid's unit) beside the fields of `solid`.
-///
-/// # Errors
-/// [`Error`] when the file cannot be made or written.
 pub fn write_picture(solid: &Solid, balls: &[Ball], path: &Path) -> Result<StagedFile, Error> {
-    let text = picture(solid, balls);
-    StagedFile::write(path, |file| file.write_all(text.as_bytes()))
+    write_text(path, &picture(solid, balls))
 }
 
 /// Writes the picture of a solid between two sets of balls: the slices of both, and the outer balls from outside.
-///
-/// # Errors
-/// [`Error`] when the file cannot be made or written.
 pub fn write_ball_picture(
     inner: &[Ball],
     outer: &[Ball],
@@ -67,18 +61,15 @@ pub fn write_ball_picture(
     panel(&mut svg, 1, &shown_balls(outer.len()), |svg| {
         draw_balls(svg, &outer, &view)
     });
-    let text = svg.finish();
-    StagedFile::write(path, |file| file.write_all(text.as_bytes()))
+    write_text(path, &svg.finish())
 }
 
 /// The circles in which the slice meets balls, as balls on it, without those in another one.
 fn sliced(balls: &[Ball], view: &View) -> Vec<Ball> {
-    let [.., toward] = view.axes;
     reduced(balls.iter().filter_map(|ball| {
         let mut center = ball.center;
-        let squared = ball.radius * ball.radius - center[toward] * center[toward];
-        center[toward] = 0.0;
-        let radius = squared.max(0.0).sqrt();
+        center[view.axes[2]] = 0.0;
+        let radius = view.sliced_square(ball).max(0.0).sqrt();
         (radius > 0.0).then_some(Ball { center, radius })
     }))
 }
@@ -94,10 +85,6 @@ struct View {
 }
 
 impl View {
-    fn of(solid: &Solid) -> Self {
-        Self::of_box(solid.half_sides())
-    }
-
     /// The view of a box about the origin, across its shortest edge.
     fn of_box(half: [f64; 3]) -> Self {
         let mut order = [0, 1, 2];
@@ -118,7 +105,12 @@ impl View {
         [place(across), PANEL - place(up)]
     }
 
-    /// Place of a ball's centre in its panel.
+    /// Squared radius of the circle in which the slice meets a ball; not above zero if it does not.
+    fn sliced_square(&self, ball: &Ball) -> f64 {
+        let off = ball.center[self.axes[2]];
+        ball.radius * ball.radius - off * off
+    }
+
     fn center(&self, ball: &Ball) -> [f64; 2] {
         let [across, up, _] = self.axes;
         self.place([ball.center[across], ball.center[up]])
@@ -126,7 +118,7 @@ impl View {
 }
 
 fn picture(solid: &Solid, balls: &[Ball]) -> String {
-    let view = View::of(solid);
+    let view = View::of_box(solid.half_sides());
     let fields = fields(solid, &view);
     let mut svg = Svg::new(4.0 * PANEL, PANEL + 24.0);
     panel(&mut svg, 0, "depth: inside red, outside blue", |svg| {
@@ -144,7 +136,7 @@ fn picture(solid: &Solid, balls: &[Ball]) -> String {
     svg.finish()
 }
 
-/// What is said of balls shown from outside.
+/// Title of the balls shown from outside.
 fn shown_balls(count: usize) -> String {
     if count > SHOWN {
         format!("the {SHOWN} largest of {count} balls")
@@ -153,7 +145,6 @@ fn shown_balls(count: usize) -> String {
     }
 }
 
-/// Draws a panel above its title.
 fn panel(svg: &mut Svg, index: usize, title: &str, content: impl FnOnce(&mut Svg)) {
     svg.at([index as f64 * PANEL, 0.0], |svg| {
         svg.text([PANEL / 2.0, PANEL + 16.0], title);
@@ -186,7 +177,6 @@ fn fields(solid: &Solid, view: &View) -> Vec<(f64, f64)> {
         .collect()
 }
 
-/// Draws the depth of each pixel.
 fn draw_depth(svg: &mut Svg, fields: &[(f64, f64)]) {
     let deepest = fields
         .iter()
@@ -203,7 +193,6 @@ fn draw_depth(svg: &mut Svg, fields: &[(f64, f64)]) {
     });
 }
 
-/// Draws the skeletal density of each pixel inside.
 fn draw_density(svg: &mut Svg, fields: &[(f64, f64)]) {
     let densest = fields
         .iter()
@@ -227,12 +216,9 @@ fn draw_slice(svg: &mut Svg, solid: &Solid, balls: &[Ball], view: &View) {
     svg.segments(placed, "fill=\"none\" stroke=\"black\" stroke-width=\"1\"");
 }
 
-/// Draws the circles in which the slice meets balls.
 fn draw_slices(svg: &mut Svg, balls: &[Ball], view: &View, style: &str) {
-    let [.., toward] = view.axes;
     for ball in balls {
-        let off = ball.center[toward];
-        let squared = ball.radius * ball.radius - off * off;
+        let squared = view.sliced_square(ball);
         if squared > 0.0 {
             svg.circle(view.center(ball), view.scale * squared.sqrt(), style);
         }

@@ -6,7 +6,6 @@ use std::io::{self, Write};
 
 use knotdock::geometry::ball_field::Surface;
 
-/// A way to write a surface.
 pub type WriteSurface = fn(&Surface, &mut dyn Write) -> io::Result<()>;
 
 /// Formats of surfaces, by ending.

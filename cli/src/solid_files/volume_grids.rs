@@ -6,9 +6,8 @@
 //! | `.nrrd` | NRRD 4, raw | 3D Slicer, ITK, MATLAB |
 //! | `.vtk` | legacy VTK, structured points, binary | ParaView, VisIt, PyVista |
 //!
-//! Each is a short header and the numbers as they are, x fastest, as 32-bit floats. They are written here and by no crate,
-//! since those for MRC and VTK open files themselves, and only `knotdock::output` may touch the disk; for NRRD there is
-//! none.
+//! Each is a short header and the numbers, x fastest, as 32-bit floats. Crates for MRC and VTK open files themselves, and
+//! only `knotdock::output` may touch the disk.
 //!
 //! Sources: Cheng et al., "MRC2014", Journal of Structural Biology 192 (2015); teem.sourceforge.net/nrrd/format.html;
 //! "VTK File Formats", Kitware.
@@ -20,17 +19,13 @@ use std::io::{self, Write};
 pub struct VolumeGrid<'a> {
     /// Place of the first node.
     pub origin: [f64; 3],
-    /// Distance between neighbours.
     pub spacing: f64,
-    /// Nodes along x, y and z.
     pub shape: [usize; 3],
-    /// Value at each node.
     pub values: &'a [f32],
     /// What the values are, in a line of ASCII.
     pub title: &'a str,
 }
 
-/// A way to write a grid.
 pub type WriteVolume = fn(&VolumeGrid, &mut dyn Write) -> io::Result<()>;
 
 /// Formats of volume grids, by ending.
@@ -42,7 +37,6 @@ pub const VOLUME_FORMATS: [(&str, WriteVolume); 5] = [
     ("vtk", write_vtk),
 ];
 
-/// Bytes of an MRC header.
 const MRC_HEADER: usize = 1024;
 
 /// An MRC header that is filled word by word, counted from 1 as in the format's table.

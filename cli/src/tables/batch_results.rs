@@ -1,16 +1,15 @@
-//! The results of a batch: one row a pair, with the best row of each pair's own table.
+//! The results of a batch: one row per pair, with the best row of each pair's own table.
 
 use std::path::Path;
 
 use csv::StringRecord;
-use knotdock_structures::Error;
 use serde_json::Value;
 
 use crate::tables::field;
 use knotdock::bounded_read::{MAX_RECORD, read_bounded_file};
-use knotdock::table_text::cells::{TableWriter, unquoted};
-
 use knotdock::output::tables::poses::PoseTable;
+use knotdock::table_text::cells::{TableWriter, unquoted};
+use knotdock_structures::Error;
 
 /// Name of the table in the batch's directory.
 pub const RESULTS: &str = "results.csv";
@@ -29,14 +28,12 @@ const BEST: [&str; 10] = [
     "capri",
 ];
 
-/// A pair of the batch and how it went.
 #[derive(Clone, Debug)]
 pub struct PairResult {
     /// Its name, which is that of the directory of its run.
     pub name: String,
     /// The receptor as the table of pairs has it.
     pub receptor: String,
-    /// The ligand likewise.
     pub ligand: String,
     /// What its run left, or why there is none.
     pub outcome: Result<RunSummary, String>,
@@ -54,10 +51,6 @@ pub struct RunSummary {
 }
 
 impl RunSummary {
-    /// Reads the directory of a whole run.
-    ///
-    /// # Errors
-    /// [`Error`] if its table of poses cannot be read.
     pub fn of(directory: &Path) -> Result<Self, Error> {
         let table = PoseTable::read(&directory.join("poses.csv"))?;
         let rows = table.objects(0..table.rows().len());
@@ -121,7 +114,6 @@ impl RunSummary {
 /// Status of a pair that was docked.
 pub const DONE: &str = "done";
 
-/// Names of the columns.
 pub fn header() -> Vec<&'static str> {
     let mut header = vec![
         "name", "receptor", "ligand", "status", "error", "poses", "clusters",
@@ -131,7 +123,6 @@ pub fn header() -> Vec<&'static str> {
     header
 }
 
-/// The first line of the table.
 pub fn head() -> Vec<u8> {
     line(&header())
 }
@@ -170,7 +161,7 @@ fn line<T: AsRef<str>>(cells: &[T]) -> Vec<u8> {
     bytes
 }
 
-/// The name of a row's pair and whether it was docked; `None` for what is no row.
+/// The name of a row's pair and whether it was docked; `None` if it is no row.
 pub fn name_and_status(line: &[u8]) -> Option<(String, bool)> {
     let mut reader = csv::ReaderBuilder::new()
         .has_headers(false)

@@ -1,30 +1,22 @@
 //! Tables of the program's commands, and those of the terminal.
 
-pub mod atom_table;
-pub mod batch_results;
-pub mod collisions;
-pub mod complexes;
-pub mod interface;
+pub(crate) mod batch_results;
 pub mod pair_table;
-pub mod pose_list;
-pub mod refined;
-pub mod report;
+pub(crate) mod report;
 
 use std::borrow::Borrow;
 use std::io;
 
-use knotdock::output::tables::fields::number;
-use knotdock::table_text::cells::TableWriter;
 use serde_json::{Map, Value};
 
+use knotdock::output::tables::fields::number;
+use knotdock::table_text::cells::TableWriter;
+
 /// A column of a table: its name, and its value in a row, as JSON has it.
-pub type Column<Row> = (&'static str, fn(&Row) -> Value);
+pub(crate) type Column<Row> = (&'static str, fn(&Row) -> Value);
 
 /// Writes a table as CSV (RFC 4180, but with LF as the line end). Missing values are empty.
-///
-/// # Errors
-/// Those of the stream.
-pub fn write_table<'c, Row: 'c>(
+pub(crate) fn write_table<'c, Row: 'c>(
     stream: &mut dyn io::Write,
     columns: impl IntoIterator<Item = &'c Column<Row>>,
     rows: impl IntoIterator<Item = impl Borrow<Row>>,
@@ -39,7 +31,7 @@ pub fn write_table<'c, Row: 'c>(
 }
 
 /// A row as a JSON object with the names of the columns; missing values are `null`.
-pub fn object<Row>(columns: &[Column<Row>], row: &Row) -> Map<String, Value> {
+pub(crate) fn object<Row>(columns: &[Column<Row>], row: &Row) -> Map<String, Value> {
     let entries = columns.iter();
     entries
         .map(|(name, value)| ((*name).to_owned(), value(row)))
@@ -47,7 +39,7 @@ pub fn object<Row>(columns: &[Column<Row>], row: &Row) -> Map<String, Value> {
 }
 
 /// A value as a field of CSV: numbers in the shortest digits that read back, nothing for `null`.
-pub fn field(value: &Value) -> String {
+pub(crate) fn field(value: &Value) -> String {
     match value {
         Value::Null => String::new(),
         Value::String(text) => text.clone(),

@@ -1,6 +1,5 @@
-//! The table of pairs that a batch docks: one row a pair, columns by name.
+//! The table of pairs that a batch docks: one row per pair, columns by name.
 
-use knotdock_structures::Error;
 use std::collections::HashSet;
 use std::path::Path;
 
@@ -9,8 +8,8 @@ use csv::StringRecord;
 use knotdock::bounded_read::{MAX_PAIRS, read_bounded};
 use knotdock::output::files::checksum::sha256;
 use knotdock::table_text::cells::unquoted;
-use knotdock::table_text::named_columns::line_of;
-use knotdock::table_text::named_columns::{column_name, plain};
+use knotdock::table_text::named_columns::{column_name, line_of, plain};
+use knotdock_structures::Error;
 
 /// What a line begins with that is no row.
 const COMMENT: Option<u8> = Some(b'#');
@@ -31,7 +30,7 @@ pub struct PairRow {
 }
 
 impl PairRow {
-    /// The beginning of SHA-256 of what it says, wherever it stands.
+    /// The beginning of SHA-256 of its fields.
     pub fn checksum(&self) -> String {
         let said = (&self.name, &self.receptor, &self.ligand, &self.options);
         let mut sum = sha256(serde_json::json!(said).to_string().as_bytes());

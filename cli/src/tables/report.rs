@@ -1,7 +1,6 @@
 //! The tables of the terminal.
 
-use serde_json::Value;
-
+use crate::tables::field;
 use knotdock::output::tables::fields::Column;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::rank::ranking::RankedPose;
@@ -59,22 +58,17 @@ pub fn best_rows(table: &PoseTable, rows: Vec<usize>) -> String {
         "z_score" => "z-score".to_owned(),
         name => name.replace('_', " "),
     };
-    let mut lines = vec![columns.iter().map(heading).collect()];
-    for row in table.objects(rows.into_iter().take(BEST)) {
-        let field = |name: &&str| match (&row[*name], *name) {
-            (Value::Null, _) => String::new(),
-            (Value::String(text), _) => text.clone(),
-            (value, "score" | "pose_score" | "z_score") => value
-                .as_f64()
-                .map_or_else(String::new, |value| format!("{value:.1}")),
-            (value, "irmsd" | "lrmsd" | "fnat" | "dockq") => value
-                .as_f64()
-                .map_or_else(String::new, |value| format!("{value:.2}")),
-            (value, _) => value.to_string(),
+    let header: Vec<String> = columns.iter().map(heading).collect();
+    let rows = table.objects(rows.into_iter().take(BEST));
+    let lines = rows.iter().map(|row| {
+        let field = |name: &&str| match (row[*name].as_f64(), *name) {
+            (Some(value), "score" | "pose_score" | "z_score") => format!("{value:.1}"),
+            (Some(value), "irmsd" | "lrmsd" | "fnat" | "dockq") => format!("{value:.2}"),
+            (_, name) => field(&row[name]),
         };
-        lines.push(columns.iter().map(field).collect());
-    }
-    align(&lines)
+        columns.iter().map(field).collect()
+    });
+    text_table(&header.join("|"), lines)
 }
 
 /// Places of the poses that stand for their clusters: the first of each, and each pose that belongs to none.
@@ -101,34 +95,20 @@ pub fn counted(number: usize, thing: &str) -> String {
 
 /// A table as text, each column flush right: a `header` of names with `|` between them, and rows of fields.
 pub fn text_table(header: &str, rows: impl IntoIterator<Item = Vec<String>>) -> String {
-    let mut lines = vec![header.split('|').map(str::to_owned).collect()];
+    let mut lines: Vec<Vec<String>> = vec![header.split('|').map(str::to_owned).collect()];
     lines.extend(rows);
-    align(&lines)
-}
-
-/// Lines of fields as text, each column flush right.
-pub fn align(lines: &[Vec<String>]) -> String {
     let columns = lines.iter().map(Vec::len).max().unwrap_or(0);
     let width = |column: usize| {
-        lines
-            .iter()
-            .filter_map(|line| line.get(column))
-            .map(|field| field.chars().count())
-            .max()
-            .unwrap_or(0)
+        let fields = lines.iter().filter_map(|line| line.get(column));
+        fields.map(|field| field.chars().count()).max().unwrap_or(0)
     };
     let widths: Vec<usize> = (0..columns).map(width).collect();
-    let text: Vec<String> = lines
-        .iter()
-        .map(|line| {
-            let fields = line.iter().zip(&widths);
-            let line: String = fields
-                .map(|(field, &width)| format!("  {field:>width$}"))
-                .collect();
-            line.trim_end().to_owned()
-        })
-        .collect();
-    text.join("\n")
+    let text = lines.iter().map(|line| {
+        let fields = line.iter().zip(&widths);
+        let fields = fields.map(|(field, &width)| format!("  {field:>width$}"));
+        fields.collect::<String>().trim_end().to_owned()
+    });
+    text.collect::<Vec<_>>().join("\n")
 }
 
 #[cfg(test)]

@@ -12,19 +12,17 @@ const DOUBLING: f64 = 0.1;
 /// Share of the reference's rows that a setting may find fewer of than the default and still keep the answer.
 const KEEPS: f64 = 0.05;
 
-/// Recommended setting, and what it gives up.
+/// Recommended setting, and its loss.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Advice {
-    /// The setting to take.
     pub take: String,
     /// Its options of `knotdock dock`.
     pub arguments: String,
-    /// The same in words, with what it gives up, and what less and more time buy.
+    /// The same in words, with its loss, and the gains of less and more time.
     pub text: String,
 }
 
-/// How much repeats of one setting differ: the largest time and error over the smallest, and the largest agreement less
-/// the smallest.
+/// Spread of repeats: ratios of the largest to the smallest time and error, and range of the agreement.
 #[derive(Clone, Copy, Debug)]
 struct Spread {
     cost: f64,
@@ -40,7 +38,6 @@ const LEAST: Spread = Spread {
 };
 
 impl Spread {
-    /// The spread of some runs.
     fn of<'a>(runs: impl Iterator<Item = &'a Measured> + Clone) -> Self {
         let range = |value: fn(&Measured) -> f64| {
             let values = runs.clone().map(value);
@@ -86,8 +83,7 @@ impl Comparison<'_> {
         a.agreement > b.agreement + 2.0 * self.spread.agreement
     }
 
-    /// Whether `b` is not to be advised beside `a`: it is no cheaper, and either less exact, or no more exact without
-    /// finding more.
+    /// Whether `b` is not advised beside `a`: no cheaper, and less exact, or no more exact without finding more.
     fn beats(&self, a: &Measured, b: &Measured) -> bool {
         let is_worse =
             || self.loss(a) < self.loss(b) || self.is_cheaper(a, b) || self.finds_more(a, b);

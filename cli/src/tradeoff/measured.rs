@@ -10,13 +10,13 @@
 //!   the radius of clusters.
 //! - **Ranks** of near poses, where a known complex is given.
 
-use knotdock_scoring::se3::Pose;
 use serde::Serialize;
 
 use crate::tradeoff::settings::{Refused, Setting};
 use knotdock::dock::outcome::{MeasuredError, StageTime};
 use knotdock::options::DockOptions;
 use knotdock::rank::cluster::RigidBody;
+use knotdock_scoring::se3::Pose;
 
 /// Rows whose agreement is measured.
 pub const FIRST: usize = 100;
@@ -26,22 +26,18 @@ pub const FIRST: usize = 100;
 pub struct NativeRanks {
     /// Rank of the first acceptable pose ([`Criterion`](knotdock::evaluate::Criterion)).
     pub first_acceptable: Option<usize>,
-    /// Rank of the first near-native pose.
     pub first_near_native: Option<usize>,
     /// Acceptable poses among the first 100.
     pub acceptable: usize,
-    /// Near-native poses among the first 100.
     pub near_native: usize,
 }
 
 /// Measured cost and quality of a setting.
 #[derive(Clone, Debug)]
 pub struct Measured {
-    /// The setting.
     pub setting: Setting,
     /// Grid points an axis.
     pub grid: [usize; 3],
-    /// Grid spacing.
     pub spacing: f64,
     /// Modes kept in three dimensions, conjugates not counted.
     pub modes: usize,
@@ -49,7 +45,6 @@ pub struct Measured {
     pub rank: usize,
     /// Width of the spreading window.
     pub spreading_width: usize,
-    /// Poses refined.
     pub refined: usize,
     /// Time by stage; the search's own stages after sampling and planning.
     pub timing: Vec<StageTime>,
@@ -61,7 +56,6 @@ pub struct Measured {
     pub definition_correlation: Option<f64>,
     /// Share of the reference's first rows found again.
     pub agreement: f64,
-    /// Ranks of near poses, with a known complex.
     pub native: Option<NativeRanks>,
     /// Whether no other setting with the default's score has a smaller error in less time.
     pub front_error: bool,
@@ -80,14 +74,12 @@ impl Measured {
         self.timing.iter().map(|stage| stage.cpu_seconds).sum()
     }
 
-    /// What settings are compared by: seconds of all processors, which other programs disturb little, or on the clock
-    /// where the system does not tell.
+    /// Cost of a setting: processor seconds, which other programs disturb little, or else seconds on the clock.
     pub fn cost(&self) -> f64 {
         self.cpu_seconds().unwrap_or_else(|| self.wall_seconds())
     }
 
-    /// Whether it ranks by the default's score: whether its error is a loss against settings of the default's
-    /// resolution and sampling.
+    /// Whether it ranks by the default's score: the same resolution and sampling.
     pub fn same_score(&self, default: &DockOptions) -> bool {
         let options = &self.setting.options;
         (
@@ -102,7 +94,6 @@ impl Measured {
     }
 }
 
-/// All that a sweep measured.
 #[derive(Clone, Debug)]
 pub struct Tradeoff {
     /// The settings that ran: the default, the reference, then in the order of [`super::settings::settings`].
@@ -115,8 +106,7 @@ pub struct Tradeoff {
     pub with_native: bool,
 }
 
-/// The share of `reference` poses that have one of `found` within `radius`: RMSD of the body's points, in their unit.
-/// 1 where there is nothing to find.
+/// Share of `reference` poses with one of `found` within an RMSD of `radius`; 1 if there are none.
 pub fn agreement(body: &RigidBody, reference: &[Pose], found: &[Pose], radius: f64) -> f64 {
     if reference.is_empty() {
         return 1.0;
@@ -169,8 +159,8 @@ pub fn compare(scores: &[f64], reference: &[f64]) -> Comparison {
     }
 }
 
-/// Whether each of some (cost, loss) pairs is on the front: no other pair is at most as large in both and smaller in
-/// one. Pairs without a loss, or with a number that is not finite, are never on it and beat nothing.
+/// Whether each (cost, loss) pair is on the front: no other is at most as large in both and smaller in one. Pairs
+/// without a finite loss are never on it and beat nothing.
 pub fn front(pairs: &[(f64, Option<f64>)]) -> Vec<bool> {
     let finite = |&(cost, loss): &(f64, Option<f64>)| {
         let loss = loss.filter(|loss| loss.is_finite())?;

@@ -14,5 +14,5 @@ pub mod settings;
 pub mod sweep;
 
 pub use measured::{Measured, Tradeoff};
-pub use settings::{Parameter, Refused, Setting};
-pub use sweep::{SweepProgress, sweep};
+pub use settings::Parameter;
+pub use sweep::sweep;

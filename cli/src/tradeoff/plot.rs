@@ -52,10 +52,6 @@ impl Point<'_> {
     }
 }
 
-/// Draws a sweep as SVG.
-///
-/// # Errors
-/// [`Error`] where the chart cannot be drawn.
 pub fn plot(tradeoff: &Tradeoff) -> Result<String, Error> {
     let points = |value: &dyn Fn(&Measured) -> Option<f64>, front: fn(&Measured) -> bool| {
         let runs = tradeoff.measured.iter();
@@ -102,8 +98,7 @@ pub fn plot(tradeoff: &Tradeoff) -> Result<String, Error> {
     draw(&panels, columns)
 }
 
-/// A panel with the front as a dashed line, and a series for each parameter: filled discs on the front, hollow ones
-/// off it.
+/// A panel: the front as a dashed line, filled discs on it and hollow ones off it.
 fn panel(title: &str, up: Axis, points: &[Point]) -> Panel {
     let mut front: Vec<[f64; 2]> = points
         .iter()

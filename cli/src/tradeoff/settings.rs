@@ -1,29 +1,27 @@
 //! The settings of a sweep: each parameter on its own around a default, and combinations.
 
+use serde::Serialize;
+
 use knotdock::options::definition::{Definition, Scope, name_of};
 use knotdock::options::{DockOptions, MAX_PER_AXIS, Precision, SampleGrid, option_named};
 use knotdock_structures::Error;
-use serde::Serialize;
 
 /// Change of the default that a setting makes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Parameter {
-    /// Nothing.
     Default,
     /// What agreement is measured by: the default with the most rotations of the sweep.
     Reference,
     /// The default at a few rotations more or fewer, which differs from it by noise alone.
     Repeat,
-    /// The option of this name.
     Option(&'static str),
     /// Several at once.
     Combination,
 }
 
-/// An option that a sweep moves.
 struct Swept {
     option: &'static str,
-    /// Its values around a default, each with what goes along with it.
+    /// Its values around a default, each with further changes.
     values: fn(&DockOptions, Planned) -> Vec<Vec<Change>>,
 }
 
@@ -46,7 +44,7 @@ const SWEPT: [Swept; 9] = [
         option: "spacing",
         values: |_, planned| {
             let spacings = [1.15, 0.85, 0.7].map(|factor| spacing(planned, factor));
-            spacings.map(|change| vec![change]).into()
+            each("spacing", spacings)
         },
     },
     // And with it the spacing: another score rather than a better or worse one.
@@ -61,15 +59,20 @@ const SWEPT: [Swept; 9] = [
         option: "rotations",
         values: |default, _| {
             let factors = [1.0 / 6.0, 1.0 / 3.0, 2.0];
-            let counts = factors.map(|factor| rotations(default, factor));
-            counts.map(|change| vec![change]).into()
+            each(
+                "rotations",
+                factors.map(|factor| rotations(default, factor)),
+            )
         },
     },
     Swept {
         option: "fine_rotations",
         values: |default, _| {
-            let finer = |factor| rounded_to_fours(factor * default.search.rotations as f64);
-            each("fine_rotations", [4.0, 16.0].map(finer))
+            let factors = [4.0, 16.0];
+            each(
+                "fine_rotations",
+                factors.map(|factor| rotations(default, factor)),
+            )
         },
     },
     Swept {
@@ -99,7 +102,6 @@ const SWEPT: [Swept; 9] = [
     },
 ];
 
-/// A change of an option to each of some values.
 fn each(option: &'static str, values: impl IntoIterator<Item = impl ToString>) -> Vec<Vec<Change>> {
     let values = values.into_iter();
     values
@@ -107,18 +109,17 @@ fn each(option: &'static str, values: impl IntoIterator<Item = impl ToString>) -
         .collect()
 }
 
-/// So many times the default's rotations.
-fn rotations(default: &DockOptions, factor: f64) -> Change {
-    let rotations = rounded_to_fours(factor * default.search.rotations as f64);
-    Change::new("rotations", rotations)
+/// `factor` times the default's rotations.
+fn rotations(default: &DockOptions, factor: f64) -> usize {
+    rounded_to_fours(factor * default.search.rotations as f64)
 }
 
-/// So many times the planned spacing.
-fn spacing(planned: Planned, factor: f64) -> Change {
-    Change::new("spacing", three_digits(factor * planned.spacing))
+/// `factor` times the planned spacing.
+fn spacing(planned: Planned, factor: f64) -> f64 {
+    three_digits(factor * planned.spacing)
 }
 
-/// So many times the default's resolution; a spacing that was given goes along.
+/// `factor` times the default's resolution; a spacing that was given goes along.
 fn resolution(default: &DockOptions, factor: f64) -> Vec<Change> {
     let kernel = &default.kernel;
     let resolution = three_digits(factor * kernel.resolution);
@@ -132,23 +133,17 @@ fn resolution(default: &DockOptions, factor: f64) -> Vec<Change> {
 /// Several changes at once, each with the setting's name.
 fn combinations(default: &DockOptions, planned: Planned) -> [(&'static str, Vec<Change>); 3] {
     let tolerance = |value: f64| Change::new("tolerance", value);
+    let rotations = |factor| Change::new("rotations", rotations(default, factor));
     let mut coarsest = resolution(default, 4.0 / 3.0);
-    coarsest.extend([
-        rotations(default, 1.0 / 6.0),
-        tolerance(0.1),
-        Change::new("per_rotation", 1),
-    ]);
-    let coarse = vec![rotations(default, 1.0 / 3.0), tolerance(3e-2)];
-    let fine = vec![
-        rotations(default, 2.0),
-        tolerance(1e-3),
-        spacing(planned, 0.85),
-    ];
+    let once = Change::new("per_rotation", 1);
+    coarsest.extend([rotations(1.0 / 6.0), tolerance(0.1), once]);
+    let coarse = vec![rotations(1.0 / 3.0), tolerance(3e-2)];
+    let spacing = Change::new("spacing", spacing(planned, 0.85));
+    let fine = vec![rotations(2.0), tolerance(1e-3), spacing];
     [("coarsest", coarsest), ("coarse", coarse), ("fine", fine)]
 }
 
 impl Parameter {
-    /// The parameters that a sweep can be limited to.
     pub fn all() -> Vec<Self> {
         let options = SWEPT.iter().map(|swept| Self::Option(swept.option));
         options.chain([Self::Combination]).collect()
@@ -170,7 +165,6 @@ impl Parameter {
         }
     }
 
-    /// The inputs that it has an effect on.
     pub fn scope(self) -> Scope {
         match self {
             Self::Option(name) => option_named(name).map_or(Scope::Both, Definition::scope),
@@ -195,31 +189,26 @@ impl std::str::FromStr for Parameter {
 /// One setting of a sweep.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
-    /// What it is called.
     pub name: String,
     /// What it changes.
     pub parameter: Parameter,
-    /// The options of `knotdock dock` that it changes, as they are typed in place of the default's; empty for the
-    /// default.
+    /// Options of `knotdock dock` that it changes, as typed; empty for the default.
     pub arguments: String,
-    /// All options.
     pub options: DockOptions,
 }
 
 /// A setting that could not be run.
 #[derive(Clone, Debug, Serialize)]
 pub struct Refused {
-    /// Its name.
     pub setting: String,
-    /// Why.
     pub reason: String,
 }
 
 impl Refused {
     /// A setting that ended in an error.
-    pub(crate) fn new(setting: &Setting, error: impl std::fmt::Display) -> Self {
+    pub(crate) fn new(setting: &str, error: impl std::fmt::Display) -> Self {
         Self {
-            setting: setting.name.clone(),
+            setting: setting.to_owned(),
             reason: error.to_string(),
         }
     }
@@ -235,6 +224,17 @@ impl Setting {
     /// Whether a sweep means nothing without it.
     pub(crate) fn is_needed(&self) -> bool {
         matches!(self.parameter, Parameter::Default | Parameter::Reference)
+    }
+
+    /// Its name, and its options where the name is not all of them.
+    pub(crate) fn description(&self) -> String {
+        match self.parameter {
+            Parameter::Default => self.name.clone(),
+            Parameter::Reference | Parameter::Repeat | Parameter::Combination => {
+                format!("{}: {}", self.name, self.arguments)
+            }
+            Parameter::Option(_) => self.arguments.clone(),
+        }
     }
 
     /// The default with some changes.
@@ -266,18 +266,13 @@ const REFERENCE_ROTATIONS: usize = 4;
 /// What a default comes to where its options leave it open.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Planned {
-    /// Grid spacing.
     pub spacing: f64,
-    /// Poses refined.
     pub refined: usize,
 }
 
 /// The settings of a sweep of `parameters` around `default`, which comes first, and the reference second; and
 /// settings out of range. Of the two repeats one is the third and one the last, so that they show a drift of the
 /// machine's speed, too.
-///
-/// # Errors
-/// [`Error`] when the reference is out of range.
 pub fn settings(
     default: &DockOptions,
     planned: Planned,
@@ -307,10 +302,7 @@ pub fn settings(
         match Setting::new(parameter, name, changes, default) {
             Ok(new) if settings.iter().any(|known| known.options == new.options) => {}
             Ok(new) => settings.push(new),
-            Err(error) => refused.push(Refused {
-                setting: name.to_owned(),
-                reason: error.to_string(),
-            }),
+            Err(error) => refused.push(Refused::new(name, error)),
         }
     };
     for swept in &SWEPT {
@@ -327,17 +319,14 @@ pub fn settings(
     Ok((settings, refused))
 }
 
-/// A change of one option.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Change {
-    /// The option's name.
     option: &'static str,
     /// Its value as it is typed.
     value: String,
 }
 
 impl Change {
-    /// The change of an option to a value.
     fn new(option: &'static str, value: impl ToString) -> Self {
         Self {
             option,
@@ -345,10 +334,6 @@ impl Change {
         }
     }
 
-    /// The options with the change.
-    ///
-    /// # Errors
-    /// [`Error`] for a value out of range.
     fn apply(&self, options: &DockOptions) -> Result<DockOptions, Error> {
         let mut changed = options.with(self.option, &self.value)?;
         match self.option {
@@ -369,8 +354,7 @@ impl Change {
         Ok(changed)
     }
 
-    /// Further arguments that a run with the `default` options needs to have `changed` ones. They give lengths that
-    /// would follow from the change otherwise, and a finer set of rotations that it has made finer still.
+    /// Further arguments that a run with `default` options needs: given lengths, and a finer set of rotations.
     fn companions(&self, default: &DockOptions, changed: &DockOptions) -> String {
         let (pass_length, finer) = (changed.kernel.pass_length, changed.search.fine_rotations);
         match (self.option, pass_length, finer) {
@@ -383,7 +367,6 @@ impl Change {
         }
     }
 
-    /// As it is typed.
     fn argument(&self) -> String {
         let long = option_named(self.option).map_or(self.option, Definition::long);
         format!("--{long} {}", self.value)

@@ -1,9 +1,8 @@
-//! Runs each setting of a sweep through the ordinary search and measures what it costs and what it gives up.
-//! [`super::measured`] says what is measured.
+//! Runs and measures each setting of a sweep ([`super::measured`]).
 
-use knotdock_scoring::se3::Pose;
 use rayon::prelude::*;
 
+use crate::messages::console::Console;
 use crate::tradeoff::measured::{
     FIRST, Measured, NativeRanks, Tradeoff, agreement, compare, front,
 };
@@ -13,45 +12,38 @@ use knotdock::dock::pair::{Pair, PreparedPair, Preparer};
 use knotdock::dock::plan::DockPlan;
 use knotdock::dock::run::dock;
 use knotdock::evaluate::{Criterion, Evaluator};
-use knotdock::options::DockOptions;
-use knotdock::options::Precision;
+use knotdock::options::{DockOptions, Precision};
 use knotdock::progress::Progress;
 use knotdock::rank::cluster::RigidBody;
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 
-/// Receiver of a sweep's progress.
-pub trait SweepProgress: Progress {
-    /// The default has run: so many settings, and about so many seconds for all.
-    fn begins(&self, settings: usize, seconds: f64);
-    /// A setting is about to run: its number from 1.
-    fn runs(&self, number: usize, setting: &Setting);
-    /// A setting has run.
-    fn ran(&self, measured: &Measured);
-    /// A setting is left out.
-    fn refused(&self, refused: &Refused);
-}
-
-/// Sweeps `parameters` around `default`, whose lengths, of meshes, are all filled in, and which `first` is prepared
-/// with.
-///
-/// # Errors
-/// [`Error`] when the default or the reference cannot be run. Other settings that cannot are reported with the
-/// reason.
+/// Sweeps `parameters` around `default`, which `first` is prepared with.
 pub fn sweep(
     pair: Pair,
     first: PreparedPair,
     default: &DockOptions,
     parameters: &[Parameter],
     evaluator: Option<&Evaluator>,
-    progress: &dyn SweepProgress,
+    console: Console,
 ) -> Result<Tradeoff, Error> {
     let mut preparer = Preparer::new(pair, default, &first);
     let body = RigidBody::new(&first.points);
+    let progress = console.progress();
     let mut refused: Vec<Refused> = Vec::new();
-    let ready = ready(first, default, parameters, &mut preparer, |left_out| {
-        progress.refused(&left_out);
+    let mut refuse = |left_out: Refused| {
+        progress.clear();
+        console.warn(format!(
+            "{} is left out: {}",
+            left_out.setting, left_out.reason
+        ));
         refused.push(left_out);
-    })?;
+    };
+    let say = |text: String| {
+        progress.clear();
+        console.say(text);
+    };
+    let ready = ready(first, default, parameters, &mut preparer, &mut refuse)?;
     // Nothing is searched with it, so it needs no memory for that.
     let exact = preparer.prepare(&default.changed(|options| {
         let tolerance = &mut options.kernel.tolerance;
@@ -61,19 +53,21 @@ pub fn sweep(
     let mut reference: Option<Reference> = None;
     let mut runs: Vec<Run> = Vec::new();
     for (index, (setting, prepared)) in ready.iter().enumerate() {
-        progress.runs(index + 1, setting);
-        let (measured, poses) = match run(setting, prepared, evaluator, progress) {
+        say(format!("{}: {}", index + 1, setting.description()));
+        let (measured, poses) = match run(setting, prepared, evaluator, &progress) {
             Ok(run) => run,
             Err(error) if setting.is_needed() => return Err(error),
             Err(error) => {
-                let left_out = Refused::new(setting, error);
-                progress.refused(&left_out);
-                refused.push(left_out);
+                refuse(Refused::new(&setting.name, error));
                 continue;
             }
         };
         match setting.parameter {
-            Parameter::Default => progress.begins(ready.len(), estimate(&measured, &ready)),
+            Parameter::Default => say(format!(
+                "{} settings, in about {:.0} s all together",
+                ready.len(),
+                estimate(&measured, &ready)
+            )),
             Parameter::Reference => {
                 reference = Some(Reference {
                     scores: exact_scores(&exact.plan, &poses)?,
@@ -98,7 +92,14 @@ pub fn sweep(
         };
         for run in &mut runs[new..] {
             run.set_against(reference, &body, default.ranking.cluster_radius)?;
-            progress.ran(&run.measured);
+            let measured = &run.measured;
+            say(format!(
+                "   {}: {:.1} s, error {:.1e}, agreement {:.2}",
+                measured.setting.name,
+                measured.wall_seconds(),
+                measured.error.rms,
+                measured.agreement
+            ));
         }
     }
     let mut measured: Vec<Measured> = runs.into_iter().map(|run| run.measured).collect();
@@ -117,14 +118,14 @@ fn ready(
     default: &DockOptions,
     parameters: &[Parameter],
     preparer: &mut Preparer,
-    mut refuse: impl FnMut(Refused),
+    refuse: &mut dyn FnMut(Refused),
 ) -> Result<Vec<(Setting, PreparedPair)>, Error> {
     let planned = Planned {
         spacing: first.plan.spacing,
         refined: first.plan.refined(),
     };
     let (settings, out_of_range) = settings(default, planned, parameters)?;
-    out_of_range.into_iter().for_each(&mut refuse);
+    out_of_range.into_iter().for_each(&mut *refuse);
     let mut settings = settings.into_iter();
     let mut ready = Vec::new();
     ready.extend(settings.next().map(|default| (default, first)));
@@ -132,7 +133,7 @@ fn ready(
         match preparer.prepare(&setting.options) {
             Ok(prepared) => ready.push((setting, prepared)),
             Err(error) if setting.parameter == Parameter::Reference => return Err(error),
-            Err(error) => refuse(Refused::new(&setting, error)),
+            Err(error) => refuse(Refused::new(&setting.name, error)),
         }
     }
     Ok(ready)
@@ -144,7 +145,7 @@ struct Reference {
     scores: Vec<f64>,
 }
 
-/// A setting that has run, with what it ranks first.
+/// A setting that has run, with its first poses.
 struct Run<'a> {
     measured: Measured,
     poses: Vec<Pose>,
@@ -207,7 +208,6 @@ fn run(
     Ok((measured, poses))
 }
 
-/// The exact sum of a plan's score at some poses.
 fn exact_scores(plan: &DockPlan, poses: &[Pose]) -> Result<Vec<f64>, Error> {
     let scorer = plan.exact_scorer()?;
     Ok(poses
@@ -234,8 +234,7 @@ fn native_ranks(evaluator: &Evaluator, outcome: &DockOutcome) -> NativeRanks {
     }
 }
 
-/// About how many seconds on the clock all settings take, going by what the default took: transforms grow as the grid
-/// does, and exact sums stay.
+/// Estimated seconds of all settings by those of the default: transforms grow as the grid, exact sums stay.
 fn estimate(default: &Measured, ready: &[(Setting, PreparedPair)]) -> f64 {
     let work = |plan: &DockPlan| {
         let points = plan.grid.iter().product::<usize>() as f64;
@@ -258,9 +257,8 @@ fn estimate(default: &Measured, ready: &[(Setting, PreparedPair)]) -> f64 {
     seconds.sum()
 }
 
-/// Marks what is on the fronts: of time and error among settings of the default's score, of time and agreement among
-/// all. The reference agrees with itself, and repeats differ from the default by noise: they are on neither and beat
-/// nothing.
+/// Marks the fronts of time and error, among settings of the default's score, and of time and agreement. The reference
+/// and repeats are on neither and beat nothing.
 fn mark_fronts(measured: &mut [Measured], default: &DockOptions) {
     let other = |run: &Measured| run.setting.parameter.is_choice();
     let errors: Vec<(f64, Option<f64>)> = measured

@@ -3,26 +3,26 @@
 use std::collections::HashMap;
 use std::path::Path;
 
+use clap::error::{ContextKind, ErrorKind};
+use clap::{CommandFactory, FromArgMatches, Parser, ValueHint};
+
+use crate::arguments::options::CONFIG;
+use crate::arguments::with_negative_numbers;
+use crate::commands::dock::{Dock, PLACE, refusing_recorded};
+use crate::inputs::bodies::spec_of;
+use crate::inputs::molecules::label;
+use crate::messages::suggestions::{first_paragraph, suggested};
 use crate::shards::record::RECORD;
 use crate::shards::{ATTEMPTS, POSES, SHARDS, Shard};
 use crate::tables::batch_results::RESULTS;
 use crate::tables::pair_table::{PairRow, read_pairs};
-use clap::error::{ContextKind, ErrorKind};
-use clap::{CommandFactory, FromArgMatches, Parser, ValueHint};
 use knotdock::options::definition::Form;
 use knotdock::options::option_named;
 use knotdock::output::files::checksum::sha256;
 use knotdock::output::files::seal::REPORT;
 use knotdock::plain_path::plain_path;
-use knotdock_structures::molecule::InputSpec;
-
-use crate::arguments::options::CONFIG;
-use crate::arguments::program::with_negative_numbers;
-use crate::commands::dock::{Dock, PLACE, refusing_recorded};
-use crate::inputs::bodies::spec_of;
-use crate::inputs::molecules::label;
-use crate::messages::suggestions::{first_paragraph, suggested};
 use knotdock_structures::Error;
+use knotdock_structures::molecule::InputSpec;
 
 /// One pair's command line.
 #[derive(Parser, Debug)]
@@ -32,25 +32,20 @@ struct PairCommand {
     dock: Dock,
 }
 
-/// A pair that is to be docked.
 pub struct Pair {
     /// Its row in the table, from 1.
     pub index: usize,
     /// Its name, and that of the directory of its run.
     pub name: String,
-    /// Its row of the table.
     pub row: PairRow,
-    /// Its command line.
     pub dock: Dock,
     /// Expected cost relative to others: the bytes of its files.
     pub cost: f64,
 }
 
-/// The pairs of a table.
 pub struct Pairs {
     /// The pairs of the shard, in the order of the table.
     pub own: Vec<Pair>,
-    /// Rows of the table.
     pub total: usize,
     /// SHA-256 of all rows.
     pub sha256: String,
@@ -141,6 +136,10 @@ fn parse(words: impl IntoIterator<Item = String>) -> Result<PairCommand, clap::E
     PairCommand::from_arg_matches(&matches)
 }
 
+fn with_suggestion(error: &clap::Error, remedy: &str) -> String {
+    suggested(error).map_or(remedy.to_owned(), |text| format!("{text}; {remedy}"))
+}
+
 /// Refuses options after `--` that no pair's command line could have, so that no row of the table is blamed.
 fn check_options(options: &[String]) -> Result<(), Error> {
     const REMEDY: &str =
@@ -183,11 +182,9 @@ fn check_options(options: &[String]) -> Result<(), Error> {
         // The options of a row may add what is missing.
         _ => return Ok(()),
     };
-    let suggested = suggested(&error).map_or_else(String::new, |text| text + "; ");
-    Err(Error::input(message).help(format!("{suggested}{REMEDY}")))
+    Err(Error::input(message).help(with_suggestion(&error, REMEDY)))
 }
 
-/// The command line of a pair.
 fn command(row: &PairRow, run: &Path, folder: &Path, options: &[String]) -> Result<Dock, Error> {
     const COLUMNS: &str = "name columns as the options that `knotdock dock --help` lists, and give each option once: \
                            in a column or after --";
@@ -218,8 +215,7 @@ fn command(row: &PairRow, run: &Path, folder: &Path, options: &[String]) -> Resu
     let files = files.filter(|file| !file.is_empty());
     words.extend(files.map(|file| at(folder, file)));
     let command = parse(words).map_err(|error| {
-        let suggested = suggested(&error).map_or_else(String::new, |text| text + "; ");
-        Error::input(first_paragraph(&error)).help(format!("{suggested}{COLUMNS}"))
+        Error::input(first_paragraph(&error)).help(with_suggestion(&error, COLUMNS))
     })?;
     Ok(command.dock)
 }
@@ -241,7 +237,6 @@ fn cost(row: &PairRow, folder: &Path) -> f64 {
 /// Bytes of a structure file for each byte of it that is packed by gzip.
 const PACKED: f64 = 4.0;
 
-/// A file of the table from the current folder, with its chains.
 fn at(folder: &Path, file: &str) -> String {
     let path = plain_path(&folder.join(file));
     path.to_string_lossy().into_owned()

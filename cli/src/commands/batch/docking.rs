@@ -1,10 +1,16 @@
 //! The loop of a batch or a shard: pairs that are not done are docked, and each is added to the batch's files.
 
-use knotdock::output::files::file_error;
 use std::path::PathBuf;
 use std::sync::mpsc::channel;
 use std::thread::{Builder, scope};
 
+use serde_json::{Value, json};
+
+use crate::commands::batch::batch_pairs::Pair;
+use crate::commands::batch::pair::{DockedPair, Limits, PairWork};
+use crate::commands::batch::schedule::{Slot, schedule};
+use crate::commands::report::write_batch_report;
+use crate::messages::console::Console;
 use crate::shards::part::Part;
 use crate::shards::record::{BatchRecord, Keep};
 use crate::shards::scratch::Scratch;
@@ -12,45 +18,33 @@ use crate::shards::{POSES, SHARDS};
 use crate::tables::batch_results::{PairResult, RESULTS};
 use crate::tables::report::counted;
 use knotdock::dock::shared_process::share_process;
+use knotdock::output::files::file_error;
 use knotdock::output::files::whole_file::is_link;
-use serde_json::{Value, json};
-
-use crate::commands::batch::batch_pairs::Pair;
-use crate::commands::batch::pair::{DockedPair, Limits, PairWork};
-use crate::commands::batch::schedule::{Slot, schedule};
-use crate::commands::report::write_listed;
-use crate::messages::console::Console;
-use crate::messages::leftovers::warn_leftovers;
 use knotdock_structures::Error;
 
 /// Times that the process may end during a pair before the pair is given up.
 const KILLS: usize = 10;
 
-/// A batch or a shard to dock.
 pub struct BatchRun {
-    /// The directory of the batch.
     pub directory: PathBuf,
-    /// Where the growing files are while pairs are docked; their final folder if `None`.
+    /// Folder of the growing files while pairs are docked; their final one if `None`.
     pub scratch: Option<PathBuf>,
     /// The pairs, their options, and the parts that are kept.
     pub record: BatchRecord,
     /// Threads, if they are given.
     pub threads: Option<usize>,
-    /// Time and attempts of a pair.
     pub limits: Limits,
-    /// Whether pairs that failed are docked again.
     pub retry_failed: bool,
     /// Whether it is a shard, with a folder in the directory.
     pub is_shard: bool,
 }
 
 impl BatchRun {
-    /// Docks those of the pairs that are not done; the exit code: 0 if all are done, 2 if all failures are those of their
-    /// inputs, else 1.
+    /// Docks pairs that are not done; the exit code: 0 if all are done, 2 if all failures are of inputs, else 1.
     pub fn dock(self, pairs: Vec<Pair>, console: Console) -> Result<u8, Error> {
         let place = self.place()?;
         let (_lock, leftovers) = self.record.take(&place)?;
-        warn_leftovers(&leftovers, console);
+        console.warn_leftovers(&leftovers);
         let scratch = self.scratch.as_deref();
         let scratch = scratch.map(|scratch| Scratch::open(scratch, &place, &self.record));
         let scratch = scratch.transpose()?;
@@ -79,7 +73,7 @@ impl BatchRun {
         docked?;
         let is_whole = !self.is_shard && self.record.keep == Keep::All;
         if is_whole {
-            write_listed(&self.directory, console)?;
+            write_batch_report(&self.directory, console)?;
         }
         let again = match failed {
             0 => "",
@@ -118,7 +112,6 @@ impl BatchRun {
         Ok(if code == 0 && failed > 0 { 2 } else { code })
     }
 
-    /// The folder of the batch's or the shard's files.
     fn place(&self) -> Result<PathBuf, Error> {
         if !self.is_shard {
             return Ok(self.directory.clone());
@@ -139,7 +132,6 @@ impl BatchRun {
         Ok(shards.join(self.record.shard.folder()))
     }
 
-    /// Docks the pairs that are not done.
     fn dock_all(&self, pairs: Vec<Pair>, progress: &mut BatchProgress) -> Result<(), Error> {
         let console = progress.console;
         let (lost, count) = (progress.part.lost, pairs.len());
@@ -165,16 +157,16 @@ impl BatchRun {
             progress.pairs = results.collect();
             let (slots, threads) = schedule(&pairs, self.threads);
             let mut left: Vec<Option<Pair>> = pairs.into_iter().map(Some).collect();
-            let work = slots
-                .into_iter()
-                .filter_map(|slot| Some((slot, self.work(left[slot.pair].take()?))));
+            let work = slots.into_iter().filter_map(|slot| {
+                let pair = left[slot.pair].take()?;
+                Some((slot, PairWork { pair, batch: self }))
+            });
             progress.dock_all(work.collect(), threads)?;
         }
         Ok(())
     }
 
-    /// The pairs that have to be docked: those that were never started, and those that were under way when the process
-    /// ended. Pairs that ended the process too often are noted as failed. With whole runs, every pair is checked.
+    /// Pairs that were never started, and pairs during which the process ended; pairs that ended it too often fail.
     fn waiting(&self, pairs: Vec<Pair>, part: &mut Part) -> Result<(Vec<Pair>, Vec<Pair>), Error> {
         let (mut fresh, mut stopped) = (Vec::new(), Vec::new());
         let is_again = |is_done: bool| match self.record.keep {
@@ -197,18 +189,6 @@ impl BatchRun {
         }
         Ok((fresh, stopped))
     }
-
-    fn work(&self, pair: Pair) -> PairWork {
-        PairWork {
-            dock: pair.dock,
-            directory: self.directory.join(&pair.name),
-            head: format!("[{}/{}] {}", pair.index, self.record.pairs, pair.name),
-            name: pair.name,
-            keep: self.record.keep,
-            rows: self.record.rows.unwrap_or(usize::MAX),
-            limits: self.limits,
-        }
-    }
 }
 
 /// The row of a pair before it is docked.
@@ -221,22 +201,18 @@ fn result(pair: &Pair) -> PairResult {
     }
 }
 
-/// The batch while its pairs are docked.
 struct BatchProgress<'a> {
     /// The files, to which each pair is added.
     part: Part,
     /// Row in the table and result of the pairs that are docked now, by their slots.
     pairs: Vec<(usize, PairResult)>,
-    /// The JSON entry of each pair.
     entries: Vec<Value>,
-    /// The exit code of the pairs so far.
     code: u8,
     console: Console<'a>,
 }
 
 impl BatchProgress<'_> {
-    /// Docks pairs in their order, as many at once as `threads` suffice for. No pair is started after a failure to
-    /// write.
+    /// Docks pairs in order, as many at once as `threads` allow; none starts after a failure to write.
     fn dock_all(&mut self, work: Vec<(Slot, PairWork)>, threads: usize) -> Result<(), Error> {
         let console = self.console;
         let (sender, receiver) = channel();
@@ -293,7 +269,6 @@ impl BatchProgress<'_> {
         self.part.start(&self.pairs[place].1.name)
     }
 
-    /// Adds a docked pair to the files.
     fn add(&mut self, place: usize, pair: DockedPair) -> Result<(), Error> {
         // A pair that was interrupted has not failed.
         self.console.go_on()?;

@@ -7,23 +7,22 @@ mod schedule;
 
 use std::path::PathBuf;
 
-use crate::shards::Shard;
-use crate::shards::record::{BatchRecord, Keep};
-use crate::tables::report::counted;
 use clap::Args;
-use knotdock::options::values::{AT_LEAST_ONE, AllOr, all_or_at_least_one, in_range};
 
-use crate::arguments::program::is_of_program;
+use crate::arguments::is_of_program;
 use crate::commands::batch::batch_pairs::{Pairs, pairs};
 use crate::commands::batch::docking::BatchRun;
 use crate::commands::batch::pair::Limits;
-use crate::inputs::recent_molecules::keep_recent;
 use crate::messages::console::Console;
+use crate::shards::Shard;
+use crate::shards::record::{BatchRecord, Keep};
+use crate::tables::report::counted;
+use knotdock::options::values::{AT_LEAST_ONE, AllOr, all_or_at_least_one, in_range};
 use knotdock_structures::Error;
 
 /// Dock many pairs of a table, and sum up what came of them.
 ///
-/// By default each pair has a directory of its run, and DIR/results.csv a row a pair. A pair that is done is not docked
+/// By default each pair has its own directory, and DIR/results.csv one row per pair. A pair that is done is not docked
 /// again, so that a batch which was stopped goes on where it was. A pair that fails is reported, and the others go on.
 /// For many thousands of pairs, --keep table writes one table of results and one file of poses, and --shard docks a part
 /// of the table on each of several machines.
@@ -93,7 +92,6 @@ impl Batch {
                     .help("leave it out, or give --keep table or --keep top"),
             );
         }
-        keep_recent();
         let shard = self.shard.unwrap_or(Shard::WHOLE);
         let Pairs { own, total, sha256 } = pairs(&self.pairs, shard, &directory, &self.options)?;
         console.say(format!(

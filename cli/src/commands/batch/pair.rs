@@ -1,23 +1,23 @@
 //! One pair of a batch: docked unless its run is there, within a time and with retries, and reported.
 
-use crate::messages::failure;
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::PathBuf;
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
+use clap::Args;
+use serde_json::{Value, json};
+
+use crate::commands::batch::batch_pairs::Pair;
+use crate::commands::batch::docking::BatchRun;
+use crate::commands::dock::Prepared;
+use crate::docking::{Docking, held_by_another};
+use crate::messages::console::{Console, Listener, failure_json, failure_text};
 use crate::shards::PosesOfPair;
 use crate::shards::record::Keep;
 use crate::tables::batch_results::RunSummary;
-use serde_json::{Value, json};
-
-use crate::commands::dock::{Dock, Prepared};
-use crate::docking::{Docking, held_by_another};
-use crate::messages::console::Console;
-use crate::messages::listener::Listener;
-use clap::Args;
 use knotdock::options::values::duration;
-use knotdock::progress::Ended;
+use knotdock::progress::{Ended, Progress};
 use knotdock_structures::Error;
 
 /// Seconds before a pair is docked again.
@@ -34,7 +34,6 @@ pub struct Limits {
     pub retries: usize,
 }
 
-/// The time of one pair, and the listener that may end it too.
 #[derive(Debug)]
 pub struct PairTime<'a> {
     limit: Option<(Instant, f64)>,
@@ -55,7 +54,13 @@ impl<'a> PairTime<'a> {
     }
 }
 
-impl Listener for PairTime<'_> {
+impl Listener for PairTime<'_> {}
+
+impl Progress for PairTime<'_> {
+    fn stage(&self, _: &str, _: u64) {}
+
+    fn advance(&self, _: u64) {}
+
     fn go_on(&self) -> Result<(), Ended> {
         if let Some(outer) = self.outer {
             outer.go_on()?;
@@ -67,29 +72,14 @@ impl Listener for PairTime<'_> {
     }
 }
 
-/// A pair, and how it is docked.
-pub struct PairWork {
-    /// Its command line.
-    pub dock: Dock,
-    /// Its name.
-    pub name: String,
-    /// The directory of its run, or of its complexes.
-    pub directory: PathBuf,
-    /// How its line of the report begins.
-    pub head: String,
-    /// The parts that are kept of it.
-    pub keep: Keep,
-    /// Rows of its table that are kept.
-    pub rows: usize,
-    /// Its time and attempts.
-    pub limits: Limits,
+/// A pair of a batch, to be docked.
+pub struct PairWork<'a> {
+    pub pair: Pair,
+    pub batch: &'a BatchRun,
 }
 
-/// The result of a pair.
 pub struct DockedPair {
-    /// Its JSON entry.
     pub entry: Value,
-    /// Its row of the table.
     pub outcome: Result<RunSummary, Error>,
     /// Its poses, if they are kept in one file with those of other pairs.
     pub poses: Option<PosesOfPair>,
@@ -97,26 +87,26 @@ pub struct DockedPair {
 
 /// A pair that did not fail.
 struct DonePair {
-    /// Whether it was docked in this call.
     is_new: bool,
     summary: RunSummary,
     /// Its poses, if they are kept in one file with those of other pairs.
     poses: Option<PosesOfPair>,
 }
 
-impl PairWork {
+impl PairWork<'_> {
     /// Docks the pair on some threads, and reports it.
     pub fn dock(self, threads: usize, console: Console) -> DockedPair {
         let clock = Instant::now();
         let mut entry = json!({
-            "name": self.name,
-            "directory": self.has_directory().then(|| self.directory.display().to_string()),
+            "name": self.pair.name,
+            "directory": self.has_directory().then(|| self.directory().display().to_string()),
             "status": "failed",
             "error": null,
             "best": null,
             "first_acceptable_rank": null,
         });
-        let head = &self.head;
+        let pairs = self.batch.record.pairs;
+        let head = format!("[{}/{pairs}] {}", self.pair.index, self.pair.name);
         match self.attempts(threads, console) {
             Ok(DonePair {
                 is_new,
@@ -135,8 +125,8 @@ impl PairWork {
                 }
             }
             Err(failure) => {
-                console.error(format!("{head} failed\n{}", failure::text(&failure)));
-                entry["error"] = failure::json(&failure)["error"].clone();
+                console.error(format!("{head} failed\n{}", failure_text(&failure)));
+                entry["error"] = failure_json(&failure)["error"].clone();
                 DockedPair {
                     entry,
                     outcome: Err(failure),
@@ -148,14 +138,23 @@ impl PairWork {
 
     /// Whether it has a directory in the end.
     fn has_directory(&self) -> bool {
-        matches!(self.keep, Keep::Top | Keep::All)
+        matches!(self.keep(), Keep::Top | Keep::All)
+    }
+
+    /// The directory of its run, or of its complexes.
+    fn directory(&self) -> PathBuf {
+        self.batch.directory.join(&self.pair.name)
+    }
+
+    fn keep(&self) -> Keep {
+        self.batch.record.keep
     }
 
     /// Docks it, and again where that may help.
     fn attempts(&self, threads: usize, console: Console) -> Result<DonePair, Error> {
-        let mut retries = self.limits.retries;
+        let mut retries = self.batch.limits.retries;
         loop {
-            let time = PairTime::new(self.limits, console);
+            let time = PairTime::new(self.batch.limits, console);
             // A pair's own words would hide the batch's; its run.json has them.
             let silent = Console {
                 listener: Some(&time),
@@ -180,18 +179,18 @@ impl PairWork {
     }
 
     fn once(&self, threads: usize, silent: Console, console: Console) -> Result<DonePair, Error> {
-        let dock = self.dock.clone();
-        dock.prepared(silent, Some(threads), |prepared| match (self.keep, prepared) {
+        let dock = self.pair.dock.clone();
+        dock.prepared(silent, Some(threads), |prepared| match (self.keep(), prepared) {
             (Keep::All, prepared) => {
                 let is_new = self.run(prepared, silent, console)?;
-                let summary = RunSummary::of(&self.directory)?;
+                let summary = RunSummary::of(&self.directory())?;
                 Ok(DonePair { is_new, summary, poses: None })
             }
             (_, Prepared::Run(docking)) => {
                 self.poses(*docking, silent)
             }
             (_, Prepared::Ensemble(_)) => Err(Error::input(
-                "this pair has several conformations, which are docked in runs of their own, and only --keep all keeps runs",
+                "this pair has several conformations, each of which is docked in its own run, and only --keep all keeps runs",
             )
             .help("dock such pairs with --keep all")),
         })
@@ -212,11 +211,12 @@ impl PairWork {
     /// Docks the pair without a directory of a run.
     fn poses(&self, docking: Docking, silent: Console) -> Result<DonePair, Error> {
         let docked = docking.dock(silent)?;
-        let poses = self.keep.has_poses();
-        let poses = poses.then(|| PosesOfPair::new(&self.name, &docked.wide_table(), self.rows));
+        let rows = self.batch.record.rows.unwrap_or(usize::MAX);
+        let of_pair = || PosesOfPair::new(&self.pair.name, &docked.wide_table(), rows);
+        let poses = self.keep().has_poses().then(of_pair);
         let poses = poses.transpose().map_err(Error::machine)?;
-        if self.keep == Keep::Top {
-            docked.export_top(&self.directory)?;
+        if self.keep() == Keep::Top {
+            docked.export_top(&self.directory())?;
         }
         Ok(DonePair {
             is_new: true,

@@ -8,9 +8,8 @@
 use std::cmp::Reverse;
 use std::collections::BinaryHeap;
 
-use knotdock::threads;
-
 use crate::commands::batch::batch_pairs::Pair;
+use knotdock::threads;
 
 /// Serial share of a run: `knotdock dock` of the example is 1.93 times as fast with -j 2 as with -j 1.
 const SERIAL: f64 = 0.036;
@@ -22,9 +21,7 @@ const MANY: usize = 64;
 pub struct Slot {
     /// Place among the pairs.
     pub pair: usize,
-    /// Threads.
     pub threads: usize,
-    /// Whether no other pair is docked meanwhile.
     pub is_alone: bool,
 }
 
@@ -33,12 +30,10 @@ pub struct Slot {
 struct Demand {
     /// Threads, if they name a number.
     threads: Option<usize>,
-    /// Whether no other pair may be docked meanwhile.
     is_alone: bool,
 }
 
-/// The schedule of some pairs, and the threads of all together: those `given`, or else those that all pairs' own
-/// options agree on.
+/// The schedule of some pairs, and the threads of all together: `given`, or those that all pairs' options agree on.
 pub fn schedule(pairs: &[Pair], given: Option<usize>) -> (Vec<Slot>, usize) {
     // A file of options that cannot be read is a failure of its pair alone.
     let own = pairs.iter().map(|pair| pair.dock.own_threads());
@@ -58,8 +53,7 @@ pub fn schedule(pairs: &[Pair], given: Option<usize>) -> (Vec<Slot>, usize) {
     )
 }
 
-/// The slots of pairs in the order of docking, by their expected costs (in any unit) on `threads` threads. Pairs that
-/// are docked alone come first.
+/// Slots in the order of docking, by expected costs (any unit); pairs that are docked alone come first.
 fn slots(costs: &[f64], demands: &[Demand], threads: usize) -> Vec<Slot> {
     let is_free = |&pair: &usize| demands[pair] == Demand::default();
     let (mut order, bound): (Vec<usize>, Vec<usize>) = (0..costs.len()).partition(is_free);

@@ -1,19 +1,20 @@
 //! Complex files against a known complex: models of any program.
 
-use std::path::PathBuf;
+use std::io;
+use std::path::Path;
 
-use crate::tables::complexes::{EvaluatedComplex, objects, write_complexes};
-use crate::tables::report::text_table;
-use knotdock::evaluate::ChainChoice;
-use knotdock::output::files::whole_file::write_whole;
-use knotdock_scoring::se3::Pose;
-use serde_json::json;
+use serde_json::{Value, json};
 
-use super::Evaluate;
-use crate::arguments::output_file::check_output;
+use super::{Evaluate, no_native, quality_fields};
+use crate::arguments::output_file::check_outputs;
 use crate::inputs::complex_sides::{ComplexSides, files_and_chains, for_each_model};
 use crate::inputs::native::{NativeFiles, others_text};
 use crate::messages::console::Console;
+use crate::tables::report::text_table;
+use crate::tables::{Column, object, write_table};
+use knotdock::evaluate::{ChainChoice, Criterion, PoseQuality};
+use knotdock::output::files::whole_file::write_whole;
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 
 impl Evaluate {
@@ -25,21 +26,14 @@ impl Evaluate {
             return Err(Error::input(error)
                 .help("leave them out; chains of the sides go behind the files, such as H,L A"));
         }
-        let Some(native) = self.native.read()? else {
-            return Err(Error::input("no known complex is given").help(
-                "name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE",
-            ));
-        };
-        if let Some(path) = &self.output {
-            let complexes: Vec<PathBuf> = files.iter().map(PathBuf::from).collect();
-            let natives = native.inputs().map(|input| input.record.path.as_path());
-            let read = complexes.iter().map(PathBuf::as_path).chain(natives);
-            check_output(path, read, self.force, console)?;
-        }
+        let native = self.native.read()?.ok_or_else(no_native)?;
+        let natives = native.inputs().map(|input| input.record.path.as_path());
+        let read: Vec<&Path> = files.iter().map(Path::new).chain(natives).collect();
+        check_outputs(&self.output, &read, self.force, console)?;
         native.warn(console);
         let choice = self.chain_choice(chains.is_some());
         let files = (files, chains.as_ref());
-        let reading = self.input.options.input.reading();
+        let reading = self.input.given()?.options.input.reading();
         let (found, code) = for_each_model(files, &reading, console, |file, sides| {
             evaluated(file, sides, &native, &choice)
         })?;
@@ -70,8 +64,7 @@ fn evaluated(
     native: &NativeFiles,
     choice: &ChainChoice,
 ) -> Result<(EvaluatedComplex, Vec<String>), Error> {
-    let [receptor, ligand] = &sides.molecules;
-    let evaluator = native.evaluator_by(receptor, ligand, choice)?;
+    let evaluator = native.evaluator(sides.molecules.each_ref(), choice)?;
     let (quality, report) = evaluator.best(&Pose::identity());
     let warnings = report.warnings.iter();
     let notes = warnings.map(|warning| format!("{file}: {warning}"));
@@ -90,23 +83,75 @@ fn evaluated(
     ))
 }
 
-/// Many complexes as a table.
 fn listing(rows: &[EvaluatedComplex]) -> String {
     let lines = rows.iter().map(|row| {
-        let quality = &row.quality;
-        vec![
+        let mut line = vec![
             row.file.clone(),
             row.model.to_string(),
             row.chains.join(" "),
             row.native_chains.clone(),
-            format!("{:.2}", quality.irmsd),
-            format!("{:.2}", quality.lrmsd),
-            format!("{:.3}", quality.fnat),
-            format!("{:.3}", quality.dockq),
-            quality.capri.name().to_owned(),
-            format!("{:.0}%", 100.0 * row.matched),
-        ]
+        ];
+        line.extend(quality_fields(&row.quality));
+        line.push(format!("{:.0}%", 100.0 * row.matched));
+        line
     });
     let header = "file|model|chains|native|irmsd|lrmsd|fnat|dockq|capri|matched";
     text_table(header, lines)
+}
+
+/// A complex, and how near it is to the known one.
+#[derive(Clone, Debug)]
+pub struct EvaluatedComplex {
+    pub file: String,
+    /// Its place among the models of the file, from 1.
+    pub model: usize,
+    pub chains: [String; 2],
+    /// Its chains with those of the known complex, as `A:E,B:F`.
+    pub native_chains: String,
+    /// Backbone RMSD in Å of each side by itself with the known complex's.
+    pub fits: [f64; 2],
+    /// Share of the interface residues of the known complex that it has.
+    pub matched: f64,
+    pub quality: PoseQuality,
+}
+
+/// The columns, in order; those of [`JSON_ALONE`] are not in the file.
+const COLUMNS: [Column<EvaluatedComplex>; 15] = [
+    ("file", |row| json!(row.file)),
+    ("model", |row| json!(row.model)),
+    ("chains_1", |row| json!(row.chains[0])),
+    ("chains_2", |row| json!(row.chains[1])),
+    ("irmsd", |row| json!(row.quality.irmsd)),
+    ("lrmsd", |row| json!(row.quality.lrmsd)),
+    ("fnat", |row| json!(row.quality.fnat)),
+    ("dockq", |row| json!(row.quality.dockq)),
+    ("capri", |row| json!(row.quality.capri.name())),
+    ("acceptable", |row| {
+        json!(Criterion::Acceptable.is_met(&row.quality))
+    }),
+    ("near_native", |row| {
+        json!(Criterion::NearNative.is_met(&row.quality))
+    }),
+    ("interface_share", |row| json!(row.matched)),
+    ("native_chains", |row| json!(row.native_chains)),
+    ("backbone_rmsd_1", |row| json!(row.fits[0])),
+    ("backbone_rmsd_2", |row| json!(row.fits[1])),
+];
+
+const JSON_ALONE: [&str; 4] = [
+    "acceptable",
+    "near_native",
+    "backbone_rmsd_1",
+    "backbone_rmsd_2",
+];
+
+pub fn objects(rows: &[EvaluatedComplex]) -> Vec<Value> {
+    let objects = rows.iter().map(|row| object(&COLUMNS, row).into());
+    objects.collect()
+}
+
+pub fn write_complexes(rows: &[EvaluatedComplex], stream: &mut dyn io::Write) -> io::Result<()> {
+    let columns = COLUMNS.iter();
+    let columns = columns.filter(|(name, _)| !JSON_ALONE.contains(name));
+    write_table(stream, columns, rows)
 }

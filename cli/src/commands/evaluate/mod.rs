@@ -2,14 +2,21 @@
 
 mod complexes;
 
-use crate::arguments::options::{OfReading, TypedOptions};
 use std::path::{Path, PathBuf};
 
+use clap::Args;
+use serde_json::{Map, Value, json};
+
 use crate::arguments::machine::Threads;
-use crate::records::ensemble_record::is_ensemble;
+use crate::arguments::options::{OfReading, OptionArguments};
+use crate::arguments::output_file::check_outputs;
+use crate::ensemble::finished::{RunRows, runs};
+use crate::inputs::molecules::Input;
+use crate::inputs::native::{NativeArguments, NativeFiles, announce, measure};
+use crate::messages::console::Console;
+use crate::records::is_ensemble;
 use crate::records::recorded_run::RecordedRun;
 use crate::tables::report;
-use clap::Args;
 use knotdock::evaluate::{Capri, ChainChoice, Evaluator, PoseQuality};
 use knotdock::options::{InputOptions, definitions};
 use knotdock::output::files::added::write_named;
@@ -18,14 +25,6 @@ use knotdock::output::tables::fields::Column;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::output::tables::quality;
 use knotdock::threads;
-use serde_json::{Map, Value, json};
-
-use crate::arguments::output_file::check_output;
-use crate::ensemble::finished::{RunRows, runs};
-use crate::inputs::molecules::Input;
-use crate::inputs::native::{NativeArguments, NativeFiles, announce, measure};
-use crate::messages::console::Console;
-use crate::messages::leftovers::warn_leftovers;
 use knotdock_structures::Error;
 
 /// Measure the poses of a run, or complexes of any program, against a known complex.
@@ -47,7 +46,7 @@ pub struct Evaluate {
     #[arg(long, value_name = "FILE")]
     ligand: Option<String>,
     #[command(flatten)]
-    input: TypedOptions<OfReading>,
+    input: OptionArguments<OfReading>,
     #[command(flatten)]
     native: NativeArguments,
     /// Chains with those of the known complex that they are measured against, as DOCKED:NATIVE, such as A:E,B:F.
@@ -65,7 +64,6 @@ pub struct Evaluate {
     threads: Threads,
 }
 
-/// Heading of the options on what is written.
 const OUTPUT: &str = "Output";
 
 impl Evaluate {
@@ -141,7 +139,7 @@ impl Evaluate {
             {
                 table.set_column(&column);
             }
-            warn_leftovers(&write_named(path, |file| table.write_to(file))?, console);
+            console.warn_leftovers(&write_named(path, |file| table.write_to(file))?);
             console.say(format!("\n{}", summary(table.rows(), &qualities)));
             console.say(format!(
                 "{} in {}",
@@ -181,30 +179,27 @@ impl Evaluate {
     /// The known complex matched with the molecules of a run.
     fn evaluator(&self, run_path: &Path, console: Console) -> Result<Evaluator, Error> {
         let (receptor, ligand, native) = self.inputs(run_path)?;
-        if let Some(file) = &self.output {
-            let structures = [&receptor, &ligand].into_iter().chain(native.inputs());
-            let read = structures.map(|input| input.record.path.as_path());
-            check_output(file, read.chain([run_path]), self.force, console)?;
-        }
+        let structures = [&receptor, &ligand].into_iter().chain(native.inputs());
+        let read = structures.map(|input| input.record.path.as_path());
+        let read: Vec<&Path> = read.chain([run_path]).collect();
+        check_outputs(&self.output, &read, self.force, console)?;
         let choice = self.chain_choice(false);
-        native.evaluator_by(&receptor.molecule, &ligand.molecule, &choice)
+        native.evaluator([&receptor.molecule, &ligand.molecule], &choice)
     }
 
     /// The molecules docked and the known complex: those named, or else those of the run.
     fn inputs(&self, run_path: &Path) -> Result<(Input, Input, NativeFiles), Error> {
-        if self.receptor.is_none()
-            && self.ligand.is_none()
-            && self.input.options.input != InputOptions::default()
-        {
-            let input = definitions().iter().filter(|one| one.subject() == "input");
-            let names: Vec<String> = input.map(|one| format!("--{}", one.long())).collect();
+        let input = self.input.given()?.options.input;
+        if self.receptor.is_none() && self.ligand.is_none() && input != InputOptions::default() {
+            let options = definitions().iter().filter(|one| one.subject() == "input");
+            let names: Vec<String> = options.map(|one| format!("--{}", one.long())).collect();
             let names = names.join(", ");
             return Err(Error::input(format!(
                 "{names} need --receptor and --ligand: the molecules of a run are read as the run read them"
             ))
             .help("leave them out, or name the molecules"));
         }
-        let reading = self.input.options.input.reading();
+        let reading = input.reading();
         let native = match (&self.receptor, &self.ligand, self.native.read()?) {
             (Some(receptor), Some(ligand), Some(native)) => {
                 let [receptor, ligand] = Input::read_all([receptor, ligand], &reading)?;
@@ -215,49 +210,54 @@ impl Evaluate {
         let needed = "name the molecules that were docked with --receptor and --ligand, and the known complex with \
                       --native or with --native-receptor and --native-ligand";
         let run = RecordedRun::read(run_path).map_err(|error| error.help(needed))?;
-        let part = |named: &Option<String>, place: usize| match named {
-            Some(text) => {
-                let [input] = Input::read_all([text], &reading)?;
-                Ok(input)
-            }
-            // Whether B values were taken for pLDDT hangs on both.
-            None if run.options.input.min_plddt.is_some() => {
-                let records = [&run.receptor, &run.ligand];
-                let [receptor, ligand] =
-                    Input::recorded_all(records, run_path, &run.options.input.reading())?;
-                Ok(if place == 0 { receptor } else { ligand })
-            }
-            None => {
-                let record = [&run.receptor, &run.ligand][place];
-                Input::recorded(record, run_path, &run.options.input.reading())
-            }
-        };
-        let native = match (native, &run.native) {
+        let native = match (native, &run.inputs.native) {
             (Some(native), _) => native,
             (None, Some(record)) => NativeFiles::recorded(record, run_path)?,
-            (None, None) => {
-                return Err(Error::input("no known complex is given").help(
-                    "name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE",
-                ));
-            }
+            (None, None) => return Err(no_native()),
         };
-        Ok((part(&self.receptor, 0)?, part(&self.ligand, 1)?, native))
+        // Whether B values were taken for pLDDT depends on both molecules.
+        let records = run.inputs.pair();
+        let recorded = || Input::recorded(records, run_path, &run.options.input.reading());
+        let named = |file: &String| Input::read_all([file], &reading);
+        Ok(match (&self.receptor, &self.ligand) {
+            (Some(file), _) => {
+                let ([receptor], [_, ligand]) = (named(file)?, recorded()?);
+                (receptor, ligand, native)
+            }
+            (None, Some(file)) => {
+                let ([receptor, _], [ligand]) = (recorded()?, named(file)?);
+                (receptor, ligand, native)
+            }
+            (None, None) => {
+                let [receptor, ligand] = recorded()?;
+                (receptor, ligand, native)
+            }
+        })
     }
 }
 
-/// Every pose's quality as a table.
+fn no_native() -> Error {
+    Error::input("no known complex is given")
+        .help("name it with --native FILE, or with --native-receptor FILE and --native-ligand FILE")
+}
+
 fn listing(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
     let lines = rows.iter().zip(qualities).map(|(row, quality)| {
-        vec![
-            row.rank.to_string(),
-            format!("{:.2}", quality.irmsd),
-            format!("{:.2}", quality.lrmsd),
-            format!("{:.3}", quality.fnat),
-            format!("{:.3}", quality.dockq),
-            quality.capri.name().to_owned(),
-        ]
+        let rank = std::iter::once(row.rank.to_string());
+        rank.chain(quality_fields(quality)).collect()
     });
     report::text_table("rank|irmsd|lrmsd|fnat|dockq|capri", lines)
+}
+
+/// Interface and ligand RMSD, fraction of native contacts, DockQ and CAPRI class.
+fn quality_fields(quality: &PoseQuality) -> [String; 5] {
+    [
+        format!("{:.2}", quality.irmsd),
+        format!("{:.2}", quality.lrmsd),
+        format!("{:.3}", quality.fnat),
+        format!("{:.3}", quality.dockq),
+        quality.capri.name().to_owned(),
+    ]
 }
 
 /// A docked chain with a native one, as `A:E`; `_` is the chain without a name.
@@ -271,7 +271,6 @@ fn chain_pair(text: &str) -> Result<(String, String), String> {
     }
 }
 
-/// Whether a word names a complex file.
 fn is_complex(word: &str) -> bool {
     let name = word.to_lowercase();
     let name = name.strip_suffix(".gz").unwrap_or(&name);
@@ -282,12 +281,8 @@ fn is_complex(word: &str) -> bool {
 
 /// How many of the first poses are acceptable, and the first rank of each CAPRI class or better.
 fn summary(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
-    let good = |most: usize| {
-        let first = qualities.iter().take(most);
-        first
-            .filter(|quality| quality.capri >= Capri::Acceptable)
-            .count()
-    };
+    let is_good = |quality: &&PoseQuality| quality.capri >= Capri::Acceptable;
+    let good = |most: usize| qualities.iter().take(most).filter(is_good).count();
     let all = qualities.len();
     let parts: Vec<String> = [1, 10, 100]
         .into_iter()
@@ -295,28 +290,16 @@ fn summary(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
         .map(|most| format!("{} of the first {most}", good(most)))
         .chain([format!("{} of all {all}", good(all))])
         .collect();
-    format!(
-        "Acceptable or better: {}\n{}",
-        parts.join(", "),
-        firsts(rows, qualities)
-    )
-}
-
-/// The first rank of each CAPRI class or better.
-fn firsts(rows: &[PoseRow], qualities: &[PoseQuality]) -> String {
-    let classes = [Capri::Acceptable, Capri::Medium, Capri::High];
-    let parts = classes.map(|class| {
-        let first = rows
-            .iter()
-            .zip(qualities)
-            .find(|(_, quality)| quality.capri >= class);
-        match first {
+    let firsts = [Capri::Acceptable, Capri::Medium, Capri::High].map(|class| {
+        let mut rows = rows.iter().zip(qualities);
+        match rows.find(|(_, quality)| quality.capri >= class) {
             Some((row, _)) => format!("{} at rank {}", class.name(), row.rank),
             None => format!("{} nowhere", class.name()),
         }
     });
     format!(
-        "First pose of each CAPRI class or better: {}",
-        parts.join(", ")
+        "Acceptable or better: {}\nFirst pose of each CAPRI class or better: {}",
+        parts.join(", "),
+        firsts.join(", ")
     )
 }

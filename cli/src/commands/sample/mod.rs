@@ -5,12 +5,16 @@ mod sample_report;
 use std::path::PathBuf;
 use std::time::Instant;
 
+use clap::{Args, ValueEnum};
+use sample_report::{SampleReport, weights_text};
+use serde_json::json;
+
 use crate::arguments::machine::Threads;
 use crate::arguments::output_file::check_outputs;
+use crate::messages::console::Console;
 use crate::solid_files::balls::{EXPORTS, ExportBalls, write_table};
 use crate::solid_files::sample_picture::write_picture;
 use crate::solid_files::{check_picture, format_of, place_all};
-use clap::{Args, ValueEnum};
 use knotdock::options::SampleGrid;
 use knotdock::options::values::{ABOVE_ZERO, AT_LEAST_ONE, Range, in_range};
 use knotdock::threads;
@@ -23,11 +27,7 @@ use knotdock_structures::sampling::{
     Ball, BallSet, Method, Sampling, SetName, Step, knots, sample,
 };
 use knotdock_structures::sphere_tree::SphereTree;
-use serde_json::json;
-
-use crate::messages::console::Console;
 use knotdock_structures::{Error, Knots};
-use sample_report::{SampleReport, weights_text};
 
 /// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
 ///
@@ -118,7 +118,7 @@ enum Weights {
     Fitted,
 }
 
-/// The balls to write, and what was done to them.
+/// The balls to write, with their weights or level of detail.
 struct Finished {
     balls: Vec<Ball>,
     fitted: Option<FittedWeights>,
@@ -128,12 +128,10 @@ struct Finished {
 }
 
 impl Sample {
-    /// Samples.
     pub fn run(self, console: Console) -> Result<(), Error> {
         threads::on(self.threads.count(), || self.sample(console))?
     }
 
-    /// Samples on the threads of the caller.
     fn sample(self, console: Console) -> Result<(), Error> {
         let method = self.method()?;
         let export = self.check_files(console)?;
@@ -172,7 +170,9 @@ impl Sample {
             console.warn(&unseen);
             warnings.push(unseen);
         }
-        let finished = self.finish(&sampling, &meter)?;
+        let set = self.chosen(&sampling)?;
+        let set_name = set.name;
+        let finished = self.finish(set, &sampling, &meter)?;
         sampling.steps.extend(finished.step);
         let frame = solid.frame();
         let fitted = finished.fitted.as_ref();
@@ -198,7 +198,7 @@ impl Sample {
         object["knots"] = json!(self.output.display().to_string());
         object["files"] = json!(written);
         object["balls"] = json!(knots.len());
-        object["set"] = json!(chosen_name(&self, &sampling));
+        object["set"] = json!(set_name);
         object["mesh"] = json!(report);
         object["warnings"] = json!(warnings);
         object["level"] = json!(finished.level.map(|fit| reported.fit(&fit)));
@@ -209,9 +209,9 @@ impl Sample {
 
     /// Checks, before any work, that the files to write are not there and can be made; how balls are exported.
     fn check_files(&self, console: Console) -> Result<Option<ExportBalls>, Error> {
-        let mut files = vec![&self.output];
-        files.extend([&self.picture, &self.export].into_iter().flatten());
-        check_outputs(&files, &[self.mesh.as_path()], self.force, console)?;
+        let further = [&self.picture, &self.export].into_iter().flatten();
+        let files = std::iter::once(&self.output).chain(further);
+        check_outputs(files, &[&self.mesh], self.force, console)?;
         if let Some(path) = &self.picture {
             check_picture(path)?;
         }
@@ -221,7 +221,6 @@ impl Sample {
             .transpose()
     }
 
-    /// Writes the files and returns their names.
     fn write(
         &self,
         solid: &Solid,
@@ -239,7 +238,7 @@ impl Sample {
         place_all(staged)
     }
 
-    /// Warns of what is wrong with the mesh, or refuses it.
+    /// Warns of faults of the mesh, or refuses it.
     fn warn(&self, warnings: Vec<String>, console: &Console) -> Result<(), Error> {
         for warning in warnings {
             if self.strict {
@@ -253,10 +252,15 @@ impl Sample {
     }
 
     /// The balls to write: the chosen set, weighted or thinned out as requested.
-    fn finish(&self, sampling: &Sampling, meter: &HausdorffMeter) -> Result<Finished, Error> {
+    fn finish(
+        &self,
+        set: &BallSet,
+        sampling: &Sampling,
+        meter: &HausdorffMeter,
+    ) -> Result<Finished, Error> {
         let start = Instant::now();
         let mut finished = Finished {
-            balls: self.chosen(sampling)?.balls.clone(),
+            balls: set.balls.clone(),
             fitted: None,
             level: None,
             step: None,
@@ -309,20 +313,17 @@ impl Sample {
         })
     }
 
-    /// The set to write.
     fn chosen<'a>(&self, sampling: &'a Sampling) -> Result<&'a BallSet, Error> {
-        let name = chosen_name(self, sampling);
-        let found = sampling.sets.iter().find(|set| Some(set.name) == name);
-        found.ok_or_else(|| Error::machine("the sampler gave no such set"))
-    }
-}
-
-/// The name of the set to write.
-fn chosen_name(sample: &Sample, sampling: &Sampling) -> Option<SetName> {
-    match (sample.method, sample.set) {
-        (MethodName::Bi, Some(SetChoice::A1)) => Some(SetName::A1),
-        (MethodName::Bi, Some(SetChoice::A2)) => Some(SetName::A2),
-        (MethodName::Bi, _) => Some(SetName::A3),
-        _ => sampling.sets.first().map(|set| set.name),
+        let name = match (self.method, self.set) {
+            (MethodName::Bi, Some(SetChoice::A1)) => SetName::A1,
+            (MethodName::Bi, Some(SetChoice::A2)) => SetName::A2,
+            _ => SetName::A3,
+        };
+        let mut sets = sampling.sets.iter();
+        let set = match self.method {
+            MethodName::Bi => sets.find(|set| set.name == name),
+            _ => sets.next(),
+        };
+        set.ok_or_else(|| Error::machine("the sampler gave no such set"))
     }
 }

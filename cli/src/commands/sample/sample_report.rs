@@ -1,13 +1,13 @@
 //! Report of `knotdock sample` on a sampled solid.
 
-use crate::tables::report;
+use serde_json::{Value, json};
+
+use crate::tables::report::{counted, text_table};
 use knotdock_structures::mesh::{Figure, Solid};
 use knotdock_structures::sampling::hausdorff::{Fit, HausdorffMeter};
 use knotdock_structures::sampling::weights::FittedWeights;
 use knotdock_structures::sampling::{Sampling, SetName};
-use serde_json::{Value, json};
 
-/// Report on a sampled solid, in the file's unit.
 pub(super) struct SampleReport<'a> {
     pub sampling: &'a Sampling,
     pub fits: &'a [Fit],
@@ -18,7 +18,6 @@ pub(super) struct SampleReport<'a> {
 }
 
 impl<'a> SampleReport<'a> {
-    /// Report on a sampling and its fits.
     pub fn new(
         sampling: &'a Sampling,
         fits: &'a [Fit],
@@ -33,8 +32,7 @@ impl<'a> SampleReport<'a> {
         }
     }
 
-    /// What contradicts the bounds that hold for every closed mesh, a sentence each. Other methods than Algorithm 1
-    /// promise none.
+    /// Contradictions to the bounds of Algorithm 1, which hold for every closed mesh: one sentence each.
     pub fn doubts(&self) -> Vec<String> {
         let Some(covering) = self.sampling.covering else {
             return Vec::new();
@@ -75,7 +73,6 @@ impl<'a> SampleReport<'a> {
         self.counts().then(|| volume * self.unit.powi(3))
     }
 
-    /// A share of the solid's volume.
     fn percent(&self, volume: f64) -> String {
         match self.counts() {
             true => format!("{:.3}", 100.0 * volume / self.volume),
@@ -87,23 +84,8 @@ impl<'a> SampleReport<'a> {
     pub fn text(&self) -> String {
         let grid = self.sampling.field.grid;
         let n = grid.per_axis();
-        let mut lines = vec![
-            [
-                "set",
-                "balls",
-                "inward",
-                "at most",
-                "outward",
-                "at most",
-                "missed, %",
-                "outside, %",
-                "seconds",
-            ]
-            .map(str::to_owned)
-            .to_vec(),
-        ];
-        for (set, fit) in self.sampling.sets.iter().zip(self.fits) {
-            lines.push(vec![
+        let rows = self.sampling.sets.iter().zip(self.fits).map(|(set, fit)| {
+            vec![
                 json!(set.name).as_str().unwrap_or_default().to_owned(),
                 set.balls.len().to_string(),
                 Figure(fit.hausdorff_inward * self.unit).to_string(),
@@ -113,8 +95,9 @@ impl<'a> SampleReport<'a> {
                 self.percent(fit.volume_missed),
                 self.percent(fit.volume_outside),
                 format!("{:.2}", set.seconds),
-            ]);
-        }
+            ]
+        });
+        let header = "set|balls|inward|at most|outward|at most|missed, %|outside, %|seconds";
         let steps = self
             .sampling
             .steps
@@ -149,7 +132,7 @@ impl<'a> SampleReport<'a> {
             self.sampling.inside_nodes,
             Figure(grid.spacing() * self.unit),
             Figure(self.epsilon()),
-            report::align(&lines),
+            text_table(header, rows),
             steps.join(", ")
         )
     }
@@ -157,8 +140,8 @@ impl<'a> SampleReport<'a> {
     /// Fit of a level of detail, as text.
     pub fn level(&self, balls: usize, fit: &Fit) -> String {
         format!(
-            "Level of detail: {balls} {}, {} from the solid outward (at most {}) and {} inward (at most {})",
-            if balls == 1 { "ball" } else { "balls" },
+            "Level of detail: {}, {} from the solid outward (at most {}) and {} inward (at most {})",
+            counted(balls, "ball"),
             Figure(fit.hausdorff_outward * self.unit),
             Figure(fit.outward_bound * self.unit),
             Figure(fit.hausdorff_inward * self.unit),
@@ -166,7 +149,6 @@ impl<'a> SampleReport<'a> {
         )
     }
 
-    /// Upper bound of the inward distance.
     fn inward_bound(&self, fit: &Fit) -> String {
         let bound = fit.inward_bound;
         bound.map_or("-".to_owned(), |bound| {
@@ -228,7 +210,6 @@ impl<'a> SampleReport<'a> {
     }
 }
 
-/// Report on the fitted weights.
 pub(super) fn weights_text(fitted: &FittedWeights) -> String {
     format!(
         "Weights: summed bumps (alpha {}) are off one inside by {:.3} rms with weights of one and by {:.3} with those fitted; their \
