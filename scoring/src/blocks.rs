@@ -7,8 +7,9 @@
 // Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
 #![allow(clippy::needless_range_loop)]
 
+use crate::vectorized::with_simd;
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Blocks in a group.
 const GROUP: usize = 16;
@@ -224,23 +225,20 @@ impl Blocks {
 impl Blocks {
     /// As [`Self::near`].
     pub fn list_near(&self, x: &[f64; 3], reach: f64, near: &mut Near, visit: impl FnMut(&Near)) {
-        Arch::new().dispatch(ListNear {
-            blocks: self,
-            x,
-            reach,
-            near,
-            visit,
-        });
+        let blocks = self;
+        with_simd!(
+            <'a, F: FnMut(&Near)>(blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, near: &'a mut Near, visit: F) -> (),
+            |simd| blocks.near(simd, x, reach, near, visit)
+        );
     }
 
     /// As [`Self::visit_blocks`].
     pub fn list_blocks(&self, x: &[f64; 3], reach: f64, visit: impl FnMut(u32)) {
-        Arch::new().dispatch(ListBlocks {
-            blocks: self,
-            x,
-            reach,
-            visit,
-        });
+        let blocks = self;
+        with_simd!(
+            <'a, F: FnMut(u32)>(blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, visit: F) -> (),
+            |simd| blocks.visit_blocks(simd, x, reach, visit)
+        );
     }
 
     /// Whether the box of a block lies within `reach` of `x`; if none does, no point does.
@@ -253,41 +251,6 @@ impl Blocks {
             |_| within = true,
         );
         within
-    }
-}
-
-struct ListNear<'a, F> {
-    blocks: &'a Blocks,
-    x: &'a [f64; 3],
-    reach: f64,
-    near: &'a mut Near,
-    visit: F,
-}
-
-impl<F: FnMut(&Near)> WithSimd for ListNear<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        self.blocks
-            .near(simd, self.x, self.reach, self.near, self.visit);
-    }
-}
-
-struct ListBlocks<'a, F> {
-    blocks: &'a Blocks,
-    x: &'a [f64; 3],
-    reach: f64,
-    visit: F,
-}
-
-impl<F: FnMut(u32)> WithSimd for ListBlocks<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        self.blocks
-            .visit_blocks(simd, self.x, self.reach, self.visit);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use crate::precision::{InPrecision, of_precision};
 use crate::transform::Real;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 
 /// A grid pose: rotation and voxel, with the fast path's score.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -135,10 +135,7 @@ impl<T: Real> Rows<T> {
         for (row, (values, best)) in rows.zip(&mut self.best).enumerate() {
             self.open.fill(true);
             open(row, &mut self.open);
-            vectorized(
-                #[inline(always)]
-                || *best = keep(&self.open, values),
-            );
+            vectorize!(*best = keep(&self.open, values));
         }
     }
 
@@ -149,10 +146,7 @@ impl<T: Real> Rows<T> {
         found: &mut Vec<Peak>,
         check: &mut dyn FnMut(usize, &mut [bool]) -> bool,
     ) {
-        vectorized(
-            #[inline(always)]
-            || self.find_inline(rotation, limits, found, check),
-        );
+        vectorize!(self.find_inline(rotation, limits, found, check));
     }
 
     #[inline(always)]

@@ -208,13 +208,8 @@ pub(crate) fn measured_error(
         .iter()
         .zip(&exact)
         .map(|((fast, _), exact)| (fast - exact).abs());
-    let (error, best) = (
-        errors.fold(0.0, f64::max),
-        exact.iter().copied().fold(0.0, f64::max),
-    );
-    let largest = exact
-        .iter()
-        .fold(0.0f64, |largest, score| largest.max(score.abs()));
-    let scale = if is_rewarded { best } else { largest };
+    let error = errors.fold(0.0, f64::max);
+    let size = |score: &f64| if is_rewarded { *score } else { score.abs() };
+    let scale = exact.iter().map(size).fold(0.0, f64::max);
     if error == 0.0 { 0.0 } else { error / scale }
 }

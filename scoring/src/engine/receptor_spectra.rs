@@ -251,7 +251,7 @@ impl LigandFunctions {
         let (_, size) = plan.shape_functions();
         let column = |b: usize| {
             (0..ligand.len())
-                .map(|j| plan.ligand_value(ligand, b, j))
+                .map(|j| plan.shape_value(ligand, 1, b, j))
                 .collect()
         };
         Self {
@@ -347,7 +347,7 @@ impl<T: Real> Receptor<T> {
             let mut inside = Vec::new();
             let mut weights = Vec::new();
             for i in 0..receptor.len() {
-                let value = plan.receptor_value(receptor, a, i);
+                let value = plan.shape_value(receptor, 0, a, i);
                 if value != 0.0 {
                     inside.push(self.points[i]);
                     weights.push(T::of(value));

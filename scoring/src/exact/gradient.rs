@@ -4,13 +4,18 @@ use super::tables::Line;
 use super::{ExactScorer, PoseGradient};
 use crate::blocks::{LANES, Near};
 use crate::se3::Pose;
+use crate::vectorized::with_simd;
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 impl ExactScorer {
     /// Score of one pose and its gradient over translation (Å) and rotation (radians) about the ligand's centre.
     pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
-        Arch::new().dispatch(Gradient { scorer: self, pose })
+        let scorer = self;
+        with_simd!(
+            <'a>(scorer: &'a ExactScorer, pose: &'a Pose) -> (f64, PoseGradient),
+            |simd| scorer.gradient_with(simd, pose)
+        )
     }
 
     #[inline(always)]
@@ -82,21 +87,6 @@ impl ExactScorer {
             gradient.torque += arm.cross(&force);
         }
         (score, gradient)
-    }
-}
-
-/// Score and gradient of a pose.
-struct Gradient<'a> {
-    scorer: &'a ExactScorer,
-    pose: &'a Pose,
-}
-
-impl WithSimd for Gradient<'_> {
-    type Output = (f64, PoseGradient);
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        self.scorer.gradient_with(simd, self.pose)
     }
 }
 

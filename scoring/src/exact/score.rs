@@ -12,7 +12,8 @@ use super::{ExactScore, ExactScorer, ScoreTerms, ShapeParts};
 use crate::blocks::{LANES, Near, vectors, vectors_mut};
 use crate::se3::Pose;
 use crate::terms::effect::Effect;
-use pulp::{Arch, Simd, WithSimd};
+use crate::vectorized::with_simd;
+use pulp::Simd;
 
 impl ExactScorer {
     /// The score of one pose and nothing else: the sum of [`Self::terms`].
@@ -22,12 +23,41 @@ impl ExactScorer {
 
     /// Score of one pose by term.
     pub fn terms(&self, pose: &Pose) -> ScoreTerms {
-        Arch::new().dispatch(ByTerm { scorer: self, pose })
+        let scorer = self;
+        with_simd!(<'a>(scorer: &'a ExactScorer, pose: &'a Pose) -> ScoreTerms, |simd| {
+            let ([shape], mut terms) = scorer.sums(
+                simd,
+                pose,
+                &scorer.effects,
+                #[inline(always)]
+                |index| scorer.tables.scores().get(index).map(std::array::from_ref),
+            );
+            terms[Effect::Shape as usize] = shape;
+            ScoreTerms {
+                score: terms.iter().sum(),
+                terms,
+            }
+        })
     }
 
     /// What shape's term is made of at one pose: its slices, and the unfiltered score.
     pub fn shape(&self, pose: &Pose) -> ShapeParts {
-        Arch::new().dispatch(ByPart { scorer: self, pose })
+        let scorer = self;
+        with_simd!(<'a>(scorer: &'a ExactScorer, pose: &'a Pose) -> ShapeParts, |simd| {
+            let (slices, _) = scorer.sums(
+                simd,
+                pose,
+                &[],
+                #[inline(always)]
+                |index| scorer.tables.slices().get(index),
+            );
+            let weights = scorer.kernel.options().slice_weights();
+            let unfiltered = scorer.unfiltered_slices(simd, pose);
+            ShapeParts {
+                slices,
+                unfiltered: weighted(weights, unfiltered),
+            }
+        })
     }
 
     /// Score and terms of one pose with the parts of shape, whose term is the weighted sum of the slices to the last
@@ -187,61 +217,6 @@ impl ExactScorer {
 /// Slices as one sum.
 fn weighted(weights: [f64; 3], slices: [f64; 3]) -> f64 {
     (0..3).map(|i| weights[i] * slices[i]).sum()
-}
-
-/// The score of a pose by term.
-struct ByTerm<'a> {
-    scorer: &'a ExactScorer,
-    pose: &'a Pose,
-}
-
-impl WithSimd for ByTerm<'_> {
-    type Output = ScoreTerms;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> ScoreTerms {
-        let Self { scorer, pose } = self;
-        let ([shape], mut terms) = scorer.sums(
-            simd,
-            pose,
-            &scorer.effects,
-            #[inline(always)]
-            |index| scorer.tables.scores().get(index).map(std::array::from_ref),
-        );
-        terms[Effect::Shape as usize] = shape;
-        ScoreTerms {
-            score: terms.iter().sum(),
-            terms,
-        }
-    }
-}
-
-/// The slices of a pose and the unfiltered score.
-struct ByPart<'a> {
-    scorer: &'a ExactScorer,
-    pose: &'a Pose,
-}
-
-impl WithSimd for ByPart<'_> {
-    type Output = ShapeParts;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> ShapeParts {
-        let Self { scorer, pose } = self;
-        let (slices, _) = scorer.sums(
-            simd,
-            pose,
-            &[],
-            #[inline(always)]
-            |index| scorer.tables.slices().get(index),
-        );
-        let weights = scorer.kernel.options().slice_weights();
-        let unfiltered = scorer.unfiltered_slices(simd, pose);
-        ShapeParts {
-            slices,
-            unfiltered: weighted(weights, unfiltered),
-        }
-    }
 }
 
 /// Powers of the argument of a pair, as vectors of which the first ones make four numbers.

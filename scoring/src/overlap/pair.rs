@@ -3,9 +3,10 @@
 use super::pair_table::{PairTable, Place};
 use super::quadrature::Quadrature;
 use crate::kernel::product::lens_volume;
+use crate::vectorized::with_simd;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::bump::AlphaError;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 use std::f64::consts::PI;
 
 /// <psi_r, psi_s>(d) of any two radii, with its slope, for one exponent alpha.
@@ -75,20 +76,15 @@ impl PairOverlap {
 
     /// Overlap and its slope by the distance, for radii r and s (above 0) at a distance of their centres.
     pub fn value_and_slope(&self, r: f64, s: f64, distance: f64) -> (f64, f64) {
-        let [value, by_square] = self.by_square(r, s, distance * distance);
+        let (kernel, radii, square) = (self, [r.min(s), r.max(s)], distance * distance);
+        let [value, by_square] = with_simd!(
+            <'a>(kernel: &'a PairOverlap, radii: [f64; 2], square: f64) -> [f64; 2],
+            |simd| kernel.placed(simd, radii, square, &Place::new(radii[0], radii[1], square))
+        );
         (value, 2.0 * distance * by_square)
     }
 
-    /// Overlap and its slope by the squared distance of the centres.
-    pub fn by_square(&self, r: f64, s: f64, square: f64) -> [f64; 2] {
-        Arch::new().dispatch(One {
-            kernel: self,
-            radii: [r.min(s), r.max(s)],
-            square,
-        })
-    }
-
-    /// [`Self::by_square`] of a pair whose place in the table is known.
+    /// Overlap and its slope by the squared distance, of a pair whose place in the table is known.
     #[inline(always)]
     pub(super) fn placed<S: Simd>(
         &self,
@@ -111,24 +107,6 @@ impl PairOverlap {
                 [cube * value, cube * slope * unit * unit]
             }
         }
-    }
-}
-
-/// One pair.
-struct One<'a> {
-    kernel: &'a PairOverlap,
-    radii: [f64; 2],
-    square: f64,
-}
-
-impl WithSimd for One<'_> {
-    type Output = [f64; 2];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let [small, large] = self.radii;
-        let place = Place::new(small, large, self.square);
-        self.kernel.placed(simd, self.radii, self.square, &place)
     }
 }
 

@@ -6,7 +6,7 @@ use super::{SharpFit, Site};
 use crate::blocks::Near;
 use crate::rigid_move::Move;
 use crate::se3::Pose;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use nalgebra::{Matrix3, Vector3};
 
 /// Shift in Å of a move and its angle in radians up to which a list holds every pair within reach.
@@ -176,10 +176,7 @@ impl PairList {
     /// Energy with its slope at a move over the pairs of the list; clashes are not counted.
     pub(super) fn slope(&self, fit: &SharpFit, stiffness: f64, at: &Move) -> Slope {
         let turn = *at.turn.to_rotation_matrix().matrix();
-        let mut slope = vectorized(
-            #[inline(always)]
-            || self.contacts(fit, stiffness, &turn, &at.shift),
-        );
+        let mut slope = vectorize!(self.contacts(fit, stiffness, &turn, &at.shift));
         for bond in &self.bonds {
             bond.add(&turn, at, &mut slope);
         }

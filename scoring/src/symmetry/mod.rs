@@ -20,12 +20,13 @@ use std::str::FromStr;
 
 use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
+use knotdock_structures::Error;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 pub use ring_axis::{NotARing, RingAxis};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Most copies in a ring: proteins with more are rare, and their neighbours are all but parallel.
-const MOST: usize = 24;
+const MAX_COPIES: usize = 24;
 /// Most copies in each of two rings.
 const MAX_FOLDS: usize = 12;
 /// Largest departure of a pose from a ring's: in radians of its angle, and in Å of its slide along the axis. This share
@@ -41,22 +42,21 @@ pub struct Symmetry {
     folds: usize,
 }
 
-/// A text that is not C2, C3 and so on.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("'{0}' is no symmetry that is known: C2 to C{MOST} and D2 to D{MAX_FOLDS} are")]
-pub struct SymmetryError(String);
-
 impl FromStr for Symmetry {
-    type Err = SymmetryError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, SymmetryError> {
-        let wrong = || SymmetryError(text.to_owned());
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let wrong = || {
+            Error::input(format!(
+                "'{text}' is no symmetry that is known: C2 to C{MAX_COPIES} and D2 to D{MAX_FOLDS} are"
+            ))
+        };
         let (kind, digits) = text.split_at_checked(1).ok_or_else(wrong)?;
         let count = (digits.bytes().all(|byte| byte.is_ascii_digit()))
             .then(|| digits.parse().ok())
             .flatten();
         match (kind, count) {
-            ("C" | "c", Some(copies @ 2..=MOST)) => Ok(Self { copies, folds: 1 }),
+            ("C" | "c", Some(copies @ 2..=MAX_COPIES)) => Ok(Self { copies, folds: 1 }),
             ("D" | "d", Some(folds @ 2..=MAX_FOLDS)) => Ok(Self { copies: 2, folds }),
             _ => Err(wrong()),
         }
@@ -244,7 +244,7 @@ mod tests {
     /// Each image is the pose once more, and once around all is where it was.
     #[test]
     fn images_are_powers_and_close() {
-        for copies in 2..=MOST {
+        for copies in 2..=MAX_COPIES {
             let symmetry = Symmetry { copies, folds: 1 };
             let pose = some(symmetry);
             let images = symmetry.ring(&pose).unwrap();
@@ -262,7 +262,7 @@ mod tests {
     /// ring, as printed too.
     #[test]
     fn rings_are_known_wherever_the_origin_lies() {
-        for copies in [2, 3, 7, MOST] {
+        for copies in [2, 3, 7, MAX_COPIES] {
             let symmetry = Symmetry { copies, folds: 1 };
             for scale in [0.0, 1e-12, 1e-6, 1.0, 1e6] {
                 let point = scale * Vector3::new(1.0, 0.7, -0.4);
@@ -278,7 +278,7 @@ mod tests {
     /// All pairs of copies are counted once: each pair of neighbours with its share of the pairs beyond.
     #[test]
     fn pairs_beyond_neighbours_are_counted_once() {
-        for copies in 2..=MOST {
+        for copies in 2..=MAX_COPIES {
             let symmetry = Symmetry { copies, folds: 1 };
             let beyond: f64 = symmetry
                 .beyond(&some(symmetry))

@@ -8,7 +8,7 @@
 //! Conventions are those of [`super::ndft::forward`], against which it is tested: points in units of the period, modes
 //! from -floor(n/2) on each axis, row-major, the last axis fastest.
 
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -76,10 +76,7 @@ pub fn forward(
         let first = block * LANES * GROUPS;
         for (weights, output) in fields.iter().zip(&mut output) {
             let weights = gathered(&weights[first..first + points.len()]);
-            vectorized(
-                #[inline(always)]
-                || accumulate(&weights, &tables, modes, output),
-            );
+            vectorize!(accumulate(&weights, &tables, modes, output));
         }
     }
     output

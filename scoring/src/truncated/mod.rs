@@ -24,7 +24,7 @@ use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::Selection;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use knotdock_structures::Knots;
 use layout::{Harmonic, Layout};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -103,21 +103,18 @@ impl TruncatedCorrelation {
         let Some(center) = self.frame.position(&pose.rotation, &pose.translation) else {
             return Default::default();
         };
-        vectorized(
-            #[inline(always)]
-            || {
-                let rotation = pose.rotation.to_rotation_matrix();
-                let mut score = 0.0;
-                let mut gradient = PoseGradient::default();
-                for block in &self.blocks {
-                    let arms = block.turned(&rotation);
-                    let values = &self.components[block.component];
-                    let read = work.read.read(&self.layout, values, &arms, &center);
-                    block.gather(&read, &arms, &mut score, &mut gradient);
-                }
-                (score, gradient)
-            },
-        )
+        vectorize!({
+            let rotation = pose.rotation.to_rotation_matrix();
+            let mut score = 0.0;
+            let mut gradient = PoseGradient::default();
+            for block in &self.blocks {
+                let arms = block.turned(&rotation);
+                let values = &self.components[block.component];
+                let read = work.read.read(&self.layout, values, &arms, &center);
+                block.gather(&read, &arms, &mut score, &mut gradient);
+            }
+            (score, gradient)
+        })
     }
 
     /// The spectrum G^(w; R) of one rotation.
@@ -127,18 +124,15 @@ impl TruncatedCorrelation {
         work: &mut Workspace,
     ) -> RotationSpectrum {
         let mut values = vec![[0.0; 4]; self.layout.harmonics.len()];
-        vectorized(
-            #[inline(always)]
-            || {
-                work.gather.gather(
-                    &self.layout,
-                    &self.components,
-                    &self.blocks,
-                    &rotation.to_rotation_matrix(),
-                    &mut values,
-                );
-            },
-        );
+        vectorize!({
+            work.gather.gather(
+                &self.layout,
+                &self.components,
+                &self.blocks,
+                &rotation.to_rotation_matrix(),
+                &mut values,
+            );
+        });
         RotationSpectrum::new(Arc::clone(&self.layout), self.frame, *rotation, values)
     }
 }
@@ -255,10 +249,7 @@ impl RotationSpectrum {
         work: &mut Workspace,
     ) -> (f64, Vector3<f64>) {
         match self.frame.position(&self.rotation, translation) {
-            Some(position) => vectorized(
-                #[inline(always)]
-                || work.place.sum(&self.layout, &self.values, &position),
-            ),
+            Some(position) => vectorize!(work.place.sum(&self.layout, &self.values, &position)),
             None => Default::default(),
         }
     }

@@ -76,9 +76,7 @@ impl Densities {
         let prepared = || {
             let (a, b) = (listed(&first, &a), listed(&second, &b));
             OverlapModes::with_margin(&kernel, &a, &b, collision.max_modes, collision.margin)
-                .map_err(|error| {
-                    Error::input(error).help("give finite balls, or use the method tree")
-                })
+                .map_err(|error| error.help("give finite balls, or use the method tree"))
         };
         let all_pairs = pairs_nanoseconds((a.len() * b.len()) as u64);
         let modes = match collision.method {

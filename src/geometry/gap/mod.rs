@@ -35,7 +35,7 @@ use super::obstacle::reduce::reduced_sum;
 use expansion::{Expansion, Task};
 use grid::{Buffers, Grid};
 use spectrum::{Body, FrequencyBox, Kernel};
-use ways::{Points, direct, fast_3d, plan_3d};
+use ways::Points;
 
 /// Points at which all ways are held against the pairs.
 const CHECKED: usize = 24;
@@ -262,10 +262,9 @@ impl Scene {
             let expansion = Expansion::compressed(&task);
             let points = Points::new(body, self.edge, frequencies, &expansion);
             spectra.push(if fast {
-                let mut plan = plan_3d(&points, TOLERANCE)?;
-                fast_3d(&points, &mut plan)?
+                ways::fast(&points, &mut ways::planned(&points, TOLERANCE)?)?
             } else {
-                direct(&points)
+                ways::direct(&points)
             });
         }
         let half = frequencies.half();

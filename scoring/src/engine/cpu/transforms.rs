@@ -10,7 +10,7 @@ use crate::engine::receptor_spectra::{Factors, SpectrumList};
 use crate::grid_turn::GridTurn;
 use crate::transform::Real;
 use crate::transform::pruned_type1::{Forward, ForwardWorkspace};
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use num_complex::Complex;
@@ -248,29 +248,18 @@ impl<T: Real> Transforms<T> {
         for (point, y) in work.points.iter_mut().zip(&self.ligand) {
             *point = (matrix * y).into();
         }
-        vectorized(
-            #[inline(always)]
-            || {
-                self.forward
-                    .spread(&work.points, &self.weights, &mut work.forward)
-            },
-        );
+        let (points, weights) = (&work.points, &self.weights);
+        vectorize!(self.forward.spread(points, weights, &mut work.forward));
     }
 
     /// Forward along z and y: a component of the ligand's transform.
     pub fn planes(&self, component: usize, work: &mut Buffers<T>) {
-        vectorized(
-            #[inline(always)]
-            || self.forward.planes(component, &mut work.forward),
-        );
+        vectorize!(self.forward.planes(component, &mut work.forward));
     }
 
     /// Forward along x, column by column: completes a component of the ligand's transform.
     pub fn columns(&self, component: usize, work: &mut Buffers<T>) {
-        vectorized(
-            #[inline(always)]
-            || self.columns_inline(component, work),
-        );
+        vectorize!(self.columns_inline(component, work));
     }
 
     #[inline(always)]

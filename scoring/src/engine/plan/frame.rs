@@ -44,11 +44,8 @@ pub(super) fn best_frame(
     ));
     for turned in spiral_set(8 * FRAMES).iter().step_by(8) {
         for frame in [*turned, cycle * turned, cycle * cycle * turned] {
-            let found = cost(&extents.turned(&outermost, frame));
-            if let Some(found) = found
-                && (found.0.total_cmp(&best.0.0))
-                    .then(found.1.total_cmp(&best.0.1))
-                    .is_lt()
+            if let Some(found) = cost(&extents.turned(&outermost, frame))
+                && found < best.0
             {
                 best = (found, Some(frame));
             }

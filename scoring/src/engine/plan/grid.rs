@@ -14,9 +14,10 @@ use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
-/// Where two bodies lie and how far they extend, in Å.
+/// Centres and extents of two bodies, in Å.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Extents {
-    /// Middle of the receptor's bounding box, which lies along the grid's axes.
+    /// Middle of the receptor's bounding box along the grid's axes.
     pub receptor_center: Vector3<f64>,
     /// Half the receptor's bounding box.
     pub receptor_extent: [f64; 3],

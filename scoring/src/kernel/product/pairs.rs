@@ -106,10 +106,12 @@ impl ProductKernel {
         match self.band {
             // Quadratures are exact and slow.
             Band::Whole if receptor.len() * ligand.len() <= MAX_QUADRATURES => {
-                rows(receptor, ligand, |r, s| {
+                let table = |r: f64, s: f64| {
                     let panel = r.min(s) / (16.0 + self.bump.alpha().min(1e3));
                     Table::fit(self.reach(r, s), panel, |d| self.layer_overlaps(d, r, s))
-                })
+                };
+                let row = |&r: &f64| ligand.iter().map(|&s| table(r, s)).collect();
+                receptor.iter().map(row).collect()
             }
             _ => self.layer_waves(receptor, ligand),
         }
@@ -192,12 +194,6 @@ fn layer_sums(waves: &[f64], a: &[[f64; 2]], b: &[[f64; 2]]) -> [f64; 4] {
         sums[3] += far * other_grown;
     }
     sums
-}
-
-/// Something of all pairs of radii.
-fn rows<T>(receptor: &[f64], ligand: &[f64], of: impl Fn(f64, f64) -> T) -> Vec<Vec<T>> {
-    let row = |&r: &f64| ligand.iter().map(|&s| of(r, s)).collect();
-    receptor.iter().map(row).collect()
 }
 
 /// Largest value of the score kernel in a pair's table, and the distance beyond which it stays below `share` of that.

@@ -28,7 +28,8 @@ pub use sum::{ModesOverlap, ModesSum, ModesWorkspace};
 
 use super::{Accumulator, PairOverlap, WeightedBall};
 use crate::se3::Pose;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
+use knotdock_structures::Error;
 use lattice::Lattice;
 use nalgebra::{Rotation3, Vector3};
 use spectrum::{Body, Phases, Sums, Transform};
@@ -37,25 +38,6 @@ use std::f64::consts::PI;
 /// Nanoseconds a mode and ball of B, torque included: a quarter of it without. As measured (`overlap_costs_of_modes`),
 /// on the machine of [`super::pairs_nanoseconds`].
 const MODE_BALL: f64 = 1.2;
-
-/// Balls that no modes can be made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum OverlapModesError {
-    /// A body has no ball.
-    #[error("body {0} has no balls; give it at least one")]
-    Empty(char),
-    /// A centre or weight is not finite, or a radius is not above zero.
-    #[error("ball {index} of body {body} needs a finite centre and weight and a radius above zero")]
-    Ball {
-        /// A or B.
-        body: char,
-        /// Its place in the list, from 0.
-        index: usize,
-    },
-    /// The margin is negative or not finite.
-    #[error("the margin must be a finite number, 0 or above")]
-    Margin,
-}
 
 /// The modes of two bodies, ready for one pose at a time.
 #[derive(Clone, Debug)]
@@ -86,13 +68,13 @@ impl OverlapModes {
     /// which there are about 0.4 `most`^(2/3).
     ///
     /// # Errors
-    /// [`OverlapModesError`] on balls that have no transform.
+    /// [`Error`] on a body without balls, or a ball without a finite centre and weight and a radius above zero.
     pub fn new(
         kernel: &PairOverlap,
         a: &[WeightedBall],
         b: &[WeightedBall],
         most: usize,
-    ) -> Result<Self, OverlapModesError> {
+    ) -> Result<Self, Error> {
         Self::with_margin(kernel, a, b, most, 0.0)
     }
 
@@ -108,11 +90,13 @@ impl OverlapModes {
         b: &[WeightedBall],
         most: usize,
         margin: f64,
-    ) -> Result<Self, OverlapModesError> {
+    ) -> Result<Self, Error> {
         check('A', a)?;
         check('B', b)?;
         if !(margin.is_finite() && margin >= 0.0) {
-            return Err(OverlapModesError::Margin);
+            return Err(Error::input(
+                "the margin must be a finite number, 0 or above",
+            ));
         }
         let ((_, radius_a), (_, radius_b)) = (Body::extent(a), Body::extent(b));
         let reach = radius_a + radius_b + margin;
@@ -144,22 +128,14 @@ impl OverlapModes {
     fn transform_a(&mut self, [norm, error]: [f64; 2], smoothing: &Smoothing) {
         let volume = self.lattice.length.powi(3);
         let mut phases = Phases::new(&self.a, &self.lattice);
-        vectorized(
-            #[inline(always)]
-            || {
-                let middle = Vector3::zeros();
-                phases.place(&self.a, &self.lattice, &Rotation3::identity(), &middle);
-            },
-        );
+        let (turn, middle) = (Rotation3::identity(), Vector3::zeros());
+        vectorize!(phases.place(&self.a, &self.lattice, &turn, &middle));
         let mut sums: Vec<Sums> = vec![[0.0; 4]; self.lattice.widest()];
         let (mut energy, mut rounding_a) = (0.0, 0.0);
         let (mut rounding, mut rounding_b) = (0.0, 0.0);
         self.tails_a = vec![norm + error];
         for block in &self.lattice.blocks {
-            vectorized(
-                #[inline(always)]
-                || phases.gather(&self.a, block, None, &mut sums),
-            );
+            vectorize!(phases.gather(&self.a, block, None, &mut sums));
             let mut spectrum = Vec::with_capacity(block.entries.len());
             for (entry, sums) in block.entries.iter().zip(&sums) {
                 let values = both_signs(sums);
@@ -297,9 +273,11 @@ fn self_overlap(kernel: &PairOverlap, balls: &[WeightedBall]) -> [f64; 2] {
     [sum.sum().energy, (2.0 * kernel.error() + 1e-12) * most]
 }
 
-fn check(body: char, balls: &[WeightedBall]) -> Result<(), OverlapModesError> {
+fn check(body: char, balls: &[WeightedBall]) -> Result<(), Error> {
     if balls.is_empty() {
-        return Err(OverlapModesError::Empty(body));
+        return Err(Error::input(format!(
+            "body {body} has no balls; give it at least one"
+        )));
     }
     let good = |ball: &WeightedBall| {
         ball.center.iter().all(|x| x.is_finite())
@@ -308,7 +286,9 @@ fn check(body: char, balls: &[WeightedBall]) -> Result<(), OverlapModesError> {
             && ball.radius > 0.0
     };
     match balls.iter().position(|ball| !good(ball)) {
-        Some(index) => Err(OverlapModesError::Ball { body, index }),
+        Some(index) => Err(Error::input(format!(
+            "ball {index} of body {body} needs a finite centre and weight and a radius above zero"
+        ))),
         None => Ok(()),
     }
 }

@@ -28,6 +28,7 @@ pub use kernel::EffectKernel;
 use knotdock_structures::Knots;
 use restraint::ResidueRole;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The enumeration of the effects, their order and their definitions, from one line each.
 macro_rules! effects {
@@ -134,6 +135,12 @@ pub struct Label {
     pub class: usize,
     /// Value: a charge in e, or 1; 0 for a knot that does not count.
     pub value: f64,
+}
+
+/// The classes of the labels that count, each once.
+pub(crate) fn classes(labels: &[Label]) -> BTreeSet<usize> {
+    let counting = labels.iter().filter(|label| label.value != 0.0);
+    counting.map(|label| label.class).collect()
 }
 
 /// Radial function of a term before it is filtered: smooth, even, and 0 from its support on.

@@ -3,9 +3,10 @@
 use crate::blocks::{Blocks, Near};
 use crate::rigid_move::center;
 use crate::se3::Pose;
+use crate::vectorized::with_simd;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Typed atoms of two bodies, each relative to the centre of its body.
 pub(super) struct Bodies {
@@ -42,29 +43,22 @@ impl Bodies {
     /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs nearer than
     /// `reach` (Å). `value` must be `#[inline(always)]`, so that it is compiled for the vector registers of the sum.
     pub fn sum(&self, pose: &Pose, reach: f64, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
-        Arch::new().dispatch(Sum {
-            bodies: self,
-            pose,
-            reach,
-            value,
-        })
+        let bodies = self;
+        with_simd!(
+            <'a, F: Fn(usize, usize, f64) -> f64>(bodies: &'a Bodies, pose: &'a Pose, reach: f64, value: F) -> f64,
+            |simd| bodies.sum_with(simd, pose, reach, value)
+        )
     }
-}
-
-/// A sum over the pairs of two bodies at a pose.
-struct Sum<'a, F> {
-    bodies: &'a Bodies,
-    pose: &'a Pose,
-    reach: f64,
-    value: F,
-}
-
-impl<F: Fn(usize, usize, f64) -> f64> WithSimd for Sum<'_, F> {
-    type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let (bodies, pose) = (self.bodies, self.pose);
+    fn sum_with<S: Simd>(
+        &self,
+        simd: S,
+        pose: &Pose,
+        reach: f64,
+        value: impl Fn(usize, usize, f64) -> f64,
+    ) -> f64 {
+        let bodies = self;
         let matrix = pose.rotation.to_rotation_matrix();
         let place =
             pose.rotation * bodies.ligand_center + pose.translation - bodies.receptor_center;
@@ -76,7 +70,7 @@ impl<F: Fn(usize, usize, f64) -> f64> WithSimd for Sum<'_, F> {
             bodies.receptor.near(
                 simd,
                 &position,
-                self.reach,
+                reach,
                 &mut near,
                 #[inline(always)]
                 |near| {
@@ -85,7 +79,7 @@ impl<F: Fn(usize, usize, f64) -> f64> WithSimd for Sum<'_, F> {
                             debug_assert!(false, "an atom that is not there is near");
                             continue;
                         };
-                        sum += (self.value)(other, kind, square.sqrt());
+                        sum += value(other, kind, square.sqrt());
                     }
                 },
             );
@@ -180,7 +174,7 @@ impl Sides {
     /// of each. The positions of a group's atoms are those of its own file (Å).
     pub fn sum_in_contact<G>(
         &self,
-        [of_receptor, of_ligand]: [&[G]; 2],
+        [of_receptor, of_ligand]: &[Vec<G>; 2],
         pose: &Pose,
         atoms: impl Fn(&G) -> &[[f64; 3]],
         value: impl Fn(&G) -> f64,

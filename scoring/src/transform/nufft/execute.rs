@@ -3,7 +3,7 @@
 use super::super::Real;
 use super::sorted_points::Grid;
 use super::{FIRST_GROUP, Plan, SortedPoints, TransformError};
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use num_complex::Complex;
 
 impl<T: Real, const D: usize> Plan<T, D> {
@@ -34,10 +34,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         sorted: &mut SortedPoints<D>,
     ) -> Result<(), TransformError> {
         sorted.grid = self.grid;
-        vectorized(
-            #[inline(always)]
-            || sorted.set(points),
-        )
+        vectorize!(sorted.set(points))
     }
 
     /// Type 1, points to modes: `output[k] = sum_j weights[j] exp(-2 pi i k.x_j)`.
@@ -53,10 +50,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         output: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, weights.len(), output.len(), work)?;
-        vectorized(
-            #[inline(always)]
-            || self.run_forward(points, weights, work, output),
-        );
+        vectorize!(self.run_forward(points, weights, work, output));
         Ok(())
     }
 
@@ -73,10 +67,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         values: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, values.len(), modes.len(), work)?;
-        vectorized(
-            #[inline(always)]
-            || self.run_adjoint(points, modes, work, values),
-        );
+        vectorize!(self.run_adjoint(points, modes, work, values));
         Ok(())
     }
 

@@ -19,9 +19,10 @@ use super::atom_pair::{AtomPairPotential, EnergyTable, SMOOTH_REACH};
 use crate::blocks::Blocks;
 use crate::rigid_move::{Derivatives, Move, center};
 use crate::se3::Pose;
+use crate::vectorized::with_simd;
 use knotdock_structures::Knots;
 use nalgebra::{Matrix3, Vector3, Vector6};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
@@ -60,7 +61,7 @@ const HYDROGEN: f64 = 1.15;
 ///
 /// `E = sum of E_ab(d) + 0.8 RT/Å² max(0, r_a + r_b - 0.1 Å - d)²`
 ///
-/// E_ab is the atom pair potential as [`super::AtomPairs`] reads it; atoms without a kind only repel. The pose
+/// E_ab is the atom pair potential as the term `atom_pair` reads it; atoms without a kind only repel. The pose
 /// descends by less than 2 Å on a smooth energy of a quarter of that stiffness, to E(end). Its score is
 /// `-weight min(E(start), E(end))`.
 pub(super) struct Relaxation {
@@ -178,21 +179,73 @@ impl Relaxation {
         at: &Move,
         value: impl Fn(&Site, &Site, f64) -> f64,
     ) -> f64 {
-        Arch::new().dispatch(Sum {
-            atoms: &self.atoms,
-            workspace,
-            at,
-            value,
-        })
+        let atoms = &self.atoms;
+        with_simd!(
+            <'a, F: Fn(&Site, &Site, f64) -> f64>(
+                atoms: &'a Atoms, workspace: &'a mut Workspace, at: &'a Move, value: F
+            ) -> f64,
+            |simd| {
+                let mut total = 0.0;
+                atoms.visit(
+                    simd,
+                    workspace,
+                    at,
+                    #[inline(always)]
+                    || 0.0,
+                    #[inline(always)]
+                    |sum, atom, pair| *sum += value(pair.receptor, &atom.site, pair.square),
+                    #[inline(always)]
+                    |sum, _| total += sum,
+                );
+                total
+            }
+        )
     }
 
     /// Slope of the energy of the descent at a move.
     fn slope(&self, workspace: &mut Workspace, at: &Move) -> Slope {
-        Arch::new().dispatch(SlopeOf {
-            relaxation: self,
+        let relaxation = self;
+        with_simd!(
+            <'a>(relaxation: &'a Relaxation, workspace: &'a mut Workspace, at: &'a Move) -> Slope,
+            |simd| relaxation.slope_with(simd, workspace, at)
+        )
+    }
+
+    #[inline(always)]
+    fn slope_with<S: Simd>(&self, simd: S, workspace: &mut Workspace, at: &Move) -> Slope {
+        let atoms = &self.atoms;
+        let mut slope = Slope::zero();
+        atoms.visit(
+            simd,
             workspace,
             at,
-        })
+            #[inline(always)]
+            || AtomSlope {
+                gradient: Vector3::zeros(),
+                curvature: Matrix3::zeros(),
+                contacts: 0.0,
+            },
+            #[inline(always)]
+            |sums, atom, pair| {
+                let Soft {
+                    rise, stiffness, ..
+                } = self.soft(pair.receptor, &atom.site, pair.square);
+                sums.gradient += rise * pair.between;
+                if stiffness > 0.0 {
+                    sums.curvature += (stiffness * pair.between) * pair.between.transpose();
+                }
+                sums.contacts += atoms.contact(pair.square);
+            },
+            #[inline(always)]
+            |sums, arm| {
+                if sums.contacts > 0.0 {
+                    slope.contacts += sums.contacts;
+                    // Each body makes half of a rotation about the middle between their places.
+                    slope.add(&(arm + 0.5 * at.shift), &sums.gradient, &sums.curvature);
+                }
+            },
+        );
+        slope
     }
 
     /// Energy of two atoms in RT at a distance.
@@ -241,93 +294,11 @@ struct Soft {
     stiffness: f64,
 }
 
-/// A sum over pairs of atoms at a move.
-struct Sum<'a, F> {
-    atoms: &'a Atoms,
-    workspace: &'a mut Workspace,
-    at: &'a Move,
-    value: F,
-}
-
-impl<F: Fn(&Site, &Site, f64) -> f64> WithSimd for Sum<'_, F> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let mut total = 0.0;
-        self.atoms.visit(
-            simd,
-            self.workspace,
-            self.at,
-            #[inline(always)]
-            || 0.0,
-            #[inline(always)]
-            |sum, atom, pair| *sum += (self.value)(pair.receptor, &atom.site, pair.square),
-            #[inline(always)]
-            |sum, _| total += sum,
-        );
-        total
-    }
-}
-
-/// The slope of the energy of the descent at a move.
-struct SlopeOf<'a> {
-    relaxation: &'a Relaxation,
-    workspace: &'a mut Workspace,
-    at: &'a Move,
-}
-
-/// What the pairs of one ligand atom add up to.
+/// Sums over the pairs of one ligand atom.
 struct AtomSlope {
     gradient: Vector3<f64>,
     curvature: Matrix3<f64>,
     contacts: f64,
-}
-
-impl WithSimd for SlopeOf<'_> {
-    type Output = Slope;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Slope {
-        let Self {
-            relaxation,
-            workspace,
-            at,
-        } = self;
-        let atoms = &relaxation.atoms;
-        let mut slope = Slope::zero();
-        atoms.visit(
-            simd,
-            workspace,
-            at,
-            #[inline(always)]
-            || AtomSlope {
-                gradient: Vector3::zeros(),
-                curvature: Matrix3::zeros(),
-                contacts: 0.0,
-            },
-            #[inline(always)]
-            |sums, atom, pair| {
-                let Soft {
-                    rise, stiffness, ..
-                } = relaxation.soft(pair.receptor, &atom.site, pair.square);
-                sums.gradient += rise * pair.between;
-                if stiffness > 0.0 {
-                    sums.curvature += (stiffness * pair.between) * pair.between.transpose();
-                }
-                sums.contacts += atoms.contact(pair.square);
-            },
-            #[inline(always)]
-            |sums, arm| {
-                if sums.contacts > 0.0 {
-                    slope.contacts += sums.contacts;
-                    // Each body makes half of a rotation about the middle between their places.
-                    slope.add(&(arm + 0.5 * at.shift), &sums.gradient, &sums.curvature);
-                }
-            },
-        );
-        slope
-    }
 }
 
 /// The atoms of a set of knots other than hydrogens, relative to its centre. `unknown` is the kind of atoms without a

@@ -1,7 +1,7 @@
 //! Energies against the definition, slopes against differences, and where descents end, with and without noise.
 
 use super::*;
-use crate::terms::pose::atom_pair::AtomPairs;
+use crate::terms::pose::atom_pair;
 use crate::test_support::Numbers;
 
 /// Atoms of all kinds on a jittered lattice within a ball, at least 2.4 Å from each other.
@@ -54,8 +54,8 @@ fn direct(a: &Knots, b: &Knots, pose: &Pose) -> f64 {
             sum += 0.8 * (r + s - 0.1 - distance).max(0.0).powi(2);
         }
     }
-    let pairs = AtomPairs::new(a, b, &AtomPairPotential::default(), 1.0);
-    sum - pairs.score(pose)
+    let pairs = atom_pair::term([a, b], &AtomPairPotential::default(), 1.0);
+    sum - pairs(pose, &mut Workspace::default())
 }
 
 #[test]
