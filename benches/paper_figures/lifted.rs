@@ -134,7 +134,7 @@ pub fn planned(
     let heights: Vec<f64> = radii.iter().map(|radius| radius / period).collect();
     let [a, b, c] = points.frequencies.half();
     // The series has an odd number of modes, from -most to most, as the transform numbers them.
-    let modes = [a, b, c, points.expansion.len()];
+    let modes = [a, b, c, points.expansion.rank()];
     let plan = Plan::new(modes, tolerance, heights.len())?;
     Ok(Fast {
         sorted: plan.locate(&lifted(points, &heights))?,
@@ -160,7 +160,7 @@ pub fn fast(points: &Points, fast: &mut Fast) -> Result<Vec<Complex64>, Box<dyn 
     plan.locate_into(&lifted(points, heights), sorted)?;
     // The fourth coordinate carries the functions of the radius; that of frequency zero is one, so that its weights
     // are the phases alone.
-    let functions = points.expansion.len();
+    let functions = points.expansion.rank();
     plan.forward(sorted, &points.weights[functions / 2], work, sums)?;
     Ok(points.combined(|place, f| sums[place * functions + f]))
 }
@@ -169,7 +169,7 @@ pub fn fast(points: &Points, fast: &mut Fast) -> Result<Vec<Complex64>, Box<dyn 
 pub fn direct_cost(points: &Points) -> f64 {
     points.centers.len() as f64
         * (points.frequencies.count() / 2) as f64
-        * points.expansion.len() as f64
+        * points.expansion.rank() as f64
 }
 
 /// A share of the direct sums: the frequencies of `planes` of the a values of kx, nothing of it kept. The work is the

@@ -141,8 +141,8 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
         let ours = checked(least(|| fast(&points, &mut plan)), &values);
         rows.push(Row {
             power,
-            lifted_modes: series.len(),
-            rank: compressed.len(),
+            lifted_modes: series.rank(),
+            rank: compressed.rank(),
             raster_error,
             ways: [
                 literal,

@@ -138,7 +138,7 @@ impl Blocks {
         &self.blocks[block].positions
     }
 
-    /// Where a point is, by its place in the order of the blocks, in Å.
+    /// Position in Å of a point, by its place in the order of the blocks.
     #[inline(always)]
     pub fn position(&self, point: u32) -> [f64; 3] {
         let (index, lane) = (point as usize / LANES, point as usize % LANES);
@@ -189,8 +189,8 @@ impl Blocks {
         simd: S,
         x: &[f64; 3],
         reach: f64,
-        near: &mut Near,
-        mut visit: impl FnMut(&Near),
+        near: &mut NearPoints,
+        mut visit: impl FnMut(&NearPoints),
     ) {
         let square_reach = reach * reach;
         let everywhere = x.map(|x| simd.splat_f64s(x));
@@ -224,10 +224,16 @@ impl Blocks {
 /// The same for callers that are not compiled for wide vector registers themselves: each call finds them.
 impl Blocks {
     /// As [`Self::near`].
-    pub fn list_near(&self, x: &[f64; 3], reach: f64, near: &mut Near, visit: impl FnMut(&Near)) {
+    pub fn list_near(
+        &self,
+        x: &[f64; 3],
+        reach: f64,
+        near: &mut NearPoints,
+        visit: impl FnMut(&NearPoints),
+    ) {
         let blocks = self;
         with_simd!(
-            <'a, F: FnMut(&Near)>(blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, near: &'a mut Near, visit: F) -> (),
+            <'a, F: FnMut(&NearPoints)>(blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, near: &'a mut NearPoints, visit: F) -> (),
             |simd| blocks.near(simd, x, reach, near, visit)
         );
     }
@@ -314,7 +320,7 @@ const fn front() -> [[u8; LANES]; 1 << LANES] {
 }
 
 /// Points within reach of another.
-pub(crate) struct Near {
+pub(crate) struct NearPoints {
     /// Squared distances in Å^2.
     squares: [f64; CAPACITY],
     /// Places in the order of the blocks.
@@ -322,7 +328,7 @@ pub(crate) struct Near {
     count: usize,
 }
 
-impl Default for Near {
+impl Default for NearPoints {
     fn default() -> Self {
         Self {
             squares: [0.0; CAPACITY],
@@ -332,7 +338,7 @@ impl Default for Near {
     }
 }
 
-impl Near {
+impl NearPoints {
     /// Whether another eight might find no room.
     #[inline(always)]
     pub fn is_full(&self) -> bool {
@@ -439,7 +445,7 @@ mod tests {
                     let reach = 9.0;
                     let x = from.into();
                     let mut found = Vec::new();
-                    blocks.near(Scalar, &x, reach, &mut Near::default(), |near| {
+                    blocks.near(Scalar, &x, reach, &mut NearPoints::default(), |near| {
                         for (square, point) in near.pairs() {
                             let number = numbers[point as usize];
                             let distance = (from - points[number]).norm_squared();
@@ -453,7 +459,7 @@ mod tests {
                         .collect();
                     assert_eq!(found, expected, "{count} points over {spread} Å");
                     let mut listed = Vec::new();
-                    blocks.list_near(&x, reach, &mut Near::default(), |near| {
+                    blocks.list_near(&x, reach, &mut NearPoints::default(), |near| {
                         listed.extend(near.pairs().map(|(_, point)| numbers[point as usize]));
                     });
                     listed.sort_unstable();

@@ -236,9 +236,8 @@ impl Correlator {
         self.rank_error
     }
 
-    /// Largest error against the exact sum that was found at about 750 voxels of three rotations, best and overlapping ones
-    /// among them, relative to the best score there (to the largest magnitude if the kernel rewards nothing). At most the
-    /// tolerance: [`Self::with_terms`] refuses one that it exceeds. An estimate: errors elsewhere may be larger.
+    /// Largest error against the exact sum at about 750 voxels of three rotations, relative to the best score there (to
+    /// the largest magnitude if the kernel rewards nothing). At most the tolerance; errors elsewhere may be larger.
     pub fn error(&self) -> f64 {
         self.error
     }
@@ -339,7 +338,7 @@ mod tests {
         Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation
     }
 
-    /// What the front door gives at a voxel is what the exact sum gives at its pose.
+    /// The score of a voxel is the exact sum at its pose.
     #[test]
     fn peaks_have_the_exact_scores_of_their_poses() {
         let (a, b) = (cloud(80, 14.0, 1), cloud(30, 8.0, 2));

@@ -17,7 +17,7 @@ pub enum ExactSum {
 }
 
 impl ExactSum {
-    /// The exact sum of what a plan correlates.
+    /// The exact sum of a plan's correlation.
     ///
     /// # Errors
     /// [`KnotsError`] on knots that cannot be summed.

@@ -29,7 +29,7 @@ impl Peak {
 /// Voxels next to a peak, on each axis and side, that hold no further peak.
 pub const NEIGHBOURS: usize = 2;
 
-/// What a search for peaks returns at the most.
+/// Limits of a search for peaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakLimits {
     /// Number of peaks.
@@ -96,7 +96,7 @@ impl ScoreGrid {
 
     /// Appends the best voxels to `found`, best first.
     ///
-    /// Each lies at least [`NEIGHBOURS`] + 1 voxels from the others along some axis of the periodic grid. Ties go to the
+    /// Each is at least [`NEIGHBOURS`] + 1 voxels from the others along some axis of the periodic grid. Ties go to the
     /// lower voxel. Fewer are found if the neighbourhoods of those found leave nothing. Scores around peaks are
     /// overwritten with minus infinity. Scores must not be NaN.
     pub fn find_peaks(&mut self, rotation: u32, limits: PeakLimits, found: &mut Vec<Peak>) {

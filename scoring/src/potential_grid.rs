@@ -308,7 +308,7 @@ struct Combinations {
 }
 
 /// Knots of one radius and one class have one potential: the functions of the classes are added up beforehand, so that
-/// a knot reads one grid for all of them. Charges, of which there are many values, keep a grid of their own.
+/// a knot reads one grid for all of them. Charges, of which there are many values, keep a separate grid.
 ///
 /// `effects` are those of the functions, and `weight` is that of a function at one of the `count` knots.
 fn combinations(

@@ -1,8 +1,7 @@
 //! Rotation sets: near-uniform, of any size, closed under the turns of a grid, the same on every machine.
 //!
 //! [`rotation_set`] starts from a super-Fibonacci spiral (Alexa, CVPR 2022) and relaxes it. [`covering_radius`]
-//! measures how far from its nearest rotation of a set a rotation can lie. Rotations are unit quaternions, angles
-//! radians.
+//! measures the largest angle from a rotation to the nearest of a set. Rotations are unit quaternions, angles radians.
 
 use crate::grid_turn::GridTurn;
 use knotdock_structures::neighbours::Bins;

@@ -15,7 +15,7 @@ const PADDING: usize = 2;
 /// Bytes that a node of the grid takes.
 pub const BYTES_A_NODE: u64 = 8;
 
-/// Where the nodes of a grid lie. Index (z ny + y) nx + x.
+/// Places of the nodes of a grid. Index (z ny + y) nx + x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldGrid {
     /// The node of the lowest coordinates, relative to the balls' origin.
@@ -100,7 +100,7 @@ impl BallField {
         Self { grid, depth }
     }
 
-    /// Whether a node lies in no ball.
+    /// Whether a node is in no ball.
     pub fn is_free(&self, node: usize) -> bool {
         self.depth.get(node).is_some_and(|&depth| depth < 0.0)
     }

@@ -26,9 +26,9 @@ pub struct EngineMemory {
     pub workspace_image: u64,
     /// One component of a workspace.
     pub workspace_component: u64,
-    /// What choosing a rank takes beside engines and their workspace: places of the voxels, multiplicities of the modes.
+    /// The choice of a rank, without engines and their workspace: places of the voxels, multiplicities of the modes.
     pub probing: u64,
-    /// What transforming the receptor takes beside its spectra, on one thread.
+    /// The receptor's transform, without its spectra, on one thread.
     pub transform: u64,
     /// Functions of each effect that is on, and the most components that they can have.
     pub effects: Vec<(Effect, EffectSize)>,
@@ -39,7 +39,7 @@ pub struct EngineMemory {
 pub struct EffectSize {
     /// Functions of the ligand.
     pub functions: usize,
-    /// Most components: the rank of what couples them with the receptor.
+    /// Most components: the rank of the matrix that couples them with the receptor.
     pub rank: usize,
 }
 
@@ -92,14 +92,13 @@ impl EngineMemory {
         self.workspace + rank as u64 * self.workspace_component
     }
 
-    /// A workspace of so many images, as many of them together as can be.
+    /// A workspace of a number of images, as many of them together as possible.
     pub fn workspace_of(&self, rank: usize, images: usize) -> u64 {
         let further = images.clamp(1, TOGETHER) as u64 - 1;
         self.workspace_at(rank) + further * self.workspace_image
     }
 
-    /// The choice of a rank among so many components, most of which it leaves out: the whole engine, with its workspace
-    /// or with an engine of half the rank.
+    /// The choice of a rank of at most `rank`: the whole engine, with its workspace or with an engine of half the rank.
     pub fn choice(&self, rank: usize) -> u64 {
         let half = rank.div_ceil(2);
         let probing = self.probing + self.workspace_at(rank);

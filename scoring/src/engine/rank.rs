@@ -60,8 +60,8 @@ pub fn choose_rank(
 
 /// Part of the first `rank` components that belongs to each function.
 ///
-/// A component's spectrum is the sum of the functions' spectra times its combination. A function's part of it is the
-/// square of what it contributes, as a share of the squares of all.
+/// A component's spectrum is the sum of the functions' spectra times its combination. A function's part of it is its
+/// squared contribution, as a share of the squares of all.
 fn shares(spectra: &ReceptorSpectra, combination: &DMatrix<f64>, rank: usize) -> Vec<f64> {
     let norms = spectra.norms();
     let mut shares = vec![0.0; norms.len()];

@@ -4,12 +4,12 @@
 //! cache line, and the last product need not be summed across before all pairs are.
 //!
 //! Closures are inlined by order: what the compiler leaves outside the dispatched function is compiled without its
-//! vector features. Vectors are spelt out where it found none of its own: that took the score with its slices from 0.71
+//! vector features. Vectors are spelt out where it found none: that took the score with its slices from 0.71
 //! to 0.39 of the plain loop's time (`cargo bench --bench exact`, AMD EPYC, AVX2).
 
 use super::tables::{Line, PairTerm, Places};
 use super::{ExactScore, ExactScorer, ScoreTerms, ShapeParts};
-use crate::blocks::{LANES, Near, vectors, vectors_mut};
+use crate::blocks::{LANES, NearPoints, vectors, vectors_mut};
 use crate::se3::Pose;
 use crate::terms::effect::Effect;
 use crate::vectorized::with_simd;
@@ -30,7 +30,7 @@ impl ExactScorer {
                 pose,
                 &scorer.effects,
                 #[inline(always)]
-                |index| scorer.tables.scores().get(index).map(std::array::from_ref),
+                |index| scorer.tables.scores.get(index).map(std::array::from_ref),
             );
             terms[Effect::Shape as usize] = shape;
             ScoreTerms {
@@ -40,7 +40,7 @@ impl ExactScorer {
         })
     }
 
-    /// What shape's term is made of at one pose: its slices, and the unfiltered score.
+    /// The parts of shape's term at one pose: its slices, and the unfiltered score.
     pub fn shape(&self, pose: &Pose) -> ShapeParts {
         let scorer = self;
         with_simd!(<'a>(scorer: &'a ExactScorer, pose: &'a Pose) -> ShapeParts, |simd| {
@@ -49,7 +49,7 @@ impl ExactScorer {
                 pose,
                 &[],
                 #[inline(always)]
-                |index| scorer.tables.slices().get(index),
+                |index| scorer.tables.slices.get(index),
             );
             let weights = scorer.kernel.options().slice_weights();
             let unfiltered = scorer.unfiltered_slices(simd, pose);
@@ -60,8 +60,8 @@ impl ExactScorer {
         })
     }
 
-    /// Score and terms of one pose with the parts of shape, whose term is the weighted sum of the slices to the last
-    /// digit. [`Self::terms`] sums it by a table of its own and differs by rounding.
+    /// Score and terms of one pose with the parts of shape. Shape's term is the weighted sum of the slices to the last
+    /// digit; [`Self::terms`] sums it by another table and differs by rounding.
     pub fn score(&self, pose: &Pose) -> ExactScore {
         let (mut by_term, shape) = (self.terms(pose), self.shape(pose));
         let weights = self.kernel.options().slice_weights();
@@ -83,10 +83,10 @@ impl ExactScorer {
         let reach = self.kernel.reach();
         let mut totals = [0.0; KERNELS];
         let mut terms = [0.0; Effect::ALL.len()];
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         for (index, knot) in self.ligand.iter().enumerate() {
             let x = (rotation * knot.position + center).into();
-            let starts = self.tables.starts(knot.class);
+            let starts = &self.tables.starts[knot.class];
             self.receptor.near(
                 simd,
                 &x,
@@ -133,7 +133,7 @@ impl ExactScorer {
     fn add_up<'a, S: Simd, const KERNELS: usize>(
         &self,
         simd: S,
-        near: &Near,
+        near: &NearPoints,
         pair: impl Fn(u32, u32) -> Option<(f64, &'a [Line; KERNELS])>,
     ) -> [f64; KERNELS] {
         // Two sums by name, not by index, stay in registers.
@@ -171,10 +171,10 @@ impl ExactScorer {
         let cone = self.kernel.cone();
         let offsets = self.kernel.options().slice_offsets();
         let mut totals = [0.0; 3];
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         for knot in &self.ligand {
             let x = (rotation * knot.position + center).into();
-            let radius_sums = self.tables.sums(knot.class);
+            let radius_sums = &self.tables.sums[knot.class];
             let mut sums = [0.0; 3];
             self.receptor.near(
                 simd,

@@ -61,7 +61,7 @@ impl RadialFilter {
         }
     }
 
-    /// Where the window of such a filter begins to fall, and where it ends.
+    /// Start and end of the fall of such a filter's window.
     pub(super) fn window_ends(pass: f64, stop: f64, support: f64, reach_factor: f64) -> [f64; 2] {
         let ring = 1.0 / (stop - pass);
         let start = support + 0.15 * ring;

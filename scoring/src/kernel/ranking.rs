@@ -25,7 +25,7 @@ pub struct RankingKernel {
 }
 
 impl RankingKernel {
-    /// The kernel for pairs whose radius sums r + s lie in [`sum_low`, `sum_high`], Å. `reach_factor` (1 or more)
+    /// The kernel for pairs with radius sums r + s in [`sum_low`, `sum_high`], Å. `reach_factor` (1 or more)
     /// lengthens the window's fall, which sharpens the kernel's own cut in frequency: 1 serves a tolerance of 1e-2, 4
     /// one of 1e-6.
     ///
@@ -131,7 +131,7 @@ impl RankingKernel {
 
     /// Overlap of two coincident balls of radius sum sigma (Å) after the low-pass; without it, 1.
     ///
-    /// Near or above 1 for balls that the resolution shows, falling like sigma^3 for smaller ones. Trim and window are
+    /// NearPoints or above 1 for balls that the resolution shows, falling like sigma^3 for smaller ones. Trim and window are
     /// not in it.
     pub fn overlap_left(&self, sigma: f64) -> f64 {
         // Beyond this the transform is not tabulated, and the resolution shows all there is.
@@ -192,7 +192,7 @@ impl RankingKernel {
     }
 
     /// Whether B&I's own kernel rewards a pair of balls at some distance. Without a reward (lambda = 0, no skin) the best
-    /// score is what the low-pass rings to.
+    /// score is ringing of the low-pass.
     pub(crate) fn rewards(&self) -> bool {
         let high = self.cone.high - 2.0 * self.options.offset;
         [self.cone.low, high].into_iter().any(|sum| {

@@ -112,8 +112,8 @@ impl PairOverlap {
 
 /// Lens volume of balls of radii r and s, and its slope by the squared distance of their centres.
 ///
-/// The slope by the distance is -pi rho^2, rho the radius of the circle in which the spheres cross: 0 while one ball
-/// lies in the other. Equal balls at one place have a kink there, with slope 0 by symmetry.
+/// The slope by the distance is -pi rho^2, rho the radius of the circle in which the spheres cross: 0 if one ball is in
+/// the other. Coincident equal balls have a kink, with slope 0 by symmetry.
 #[inline(always)]
 pub(super) fn lens_and_slope(r: f64, s: f64, square: f64) -> [f64; 2] {
     let distance = square.sqrt();

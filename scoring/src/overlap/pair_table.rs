@@ -38,7 +38,7 @@ pub(super) struct PairTable {
     error: f64,
 }
 
-/// Where a pair lies in the table.
+/// Place of a pair in the table.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
     /// k.

@@ -13,7 +13,7 @@ const LONGEST: f64 = 0.8;
 /// Damping of a first step in RT/Å²: a part for each contact and a constant, for the curvature of contacts, which has
 /// either sign.
 const DAMPING: [f64; 2] = [0.02, 2.0];
-/// What damping is divided by after a step downhill, and multiplied by after one uphill.
+/// Divisor of the damping after a step downhill, and factor after one uphill.
 const EASED: f64 = 3.0;
 const RAISED: f64 = 5.0;
 /// A round ends with a step downhill of less than this, in RT and Å.
@@ -30,7 +30,7 @@ const CONVERGED: f64 = 1e-3;
 /// Distance of the other starts about a pose, Å: about what a search's rotations and grid leave open.
 const AROUND: f64 = 1.5;
 
-/// Where a descent came to rest.
+/// The end of a descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optimum {
     /// The pose.
@@ -44,7 +44,7 @@ impl SharpFit {
     pub fn descend(&self, pose: &Pose, list: &mut PairList) -> Option<Optimum> {
         let touches = list.begin(self, pose);
         touches.then(|| {
-            let at = self.rest(&Move::none(), list);
+            let at = self.rest(&Move::default(), list);
             self.optimum(pose, &at, list)
         })
     }
@@ -55,7 +55,7 @@ impl SharpFit {
         if !list.begin(self, pose) {
             return None;
         }
-        let first = self.rest(&Move::none(), list);
+        let first = self.rest(&Move::default(), list);
         let mut best = first;
         let mut least = list.slope(self, STIFFNESS, &best).energy.total();
         let axes = list.axes;
@@ -68,7 +68,7 @@ impl SharpFit {
                     step.fixed_rows_mut::<3>(0)
                         .copy_from(&(sign * shift * axis));
                     step.fixed_rows_mut::<3>(3).copy_from(&(sign * turn * axis));
-                    let other = self.rest(&Move::none().then(&step), list);
+                    let other = self.rest(&Move::default().then(&step), list);
                     let energy = list.slope(self, STIFFNESS, &other).energy.total();
                     if energy < least {
                         (best, least) = (other, energy);

@@ -3,7 +3,7 @@
 use super::contacts::{LigandAtom, PositionLanes, atom_sums};
 use super::energy::{BOND_REACH, BondPair, Slope, bond_count};
 use super::{SharpFit, Site};
-use crate::blocks::Near;
+use crate::blocks::NearPoints;
 use crate::rigid_move::Move;
 use crate::se3::Pose;
 use crate::vectorized::vectorize;
@@ -34,7 +34,7 @@ pub struct PairList {
     blocks: Vec<u32>,
     /// Positions of the receptor's atoms by block.
     positions: Vec<PositionLanes>,
-    near: Near,
+    near: NearPoints,
     bonds: Vec<BondPair>,
     /// Ligand atoms that a descent may bring near the receptor: index and arm.
     reachable: Vec<(usize, Vector3<f64>)>,
@@ -192,7 +192,7 @@ impl PairList {
         turn: &Matrix3<f64>,
         shift: &Vector3<f64>,
     ) -> Slope {
-        let mut slope = Slope::zero();
+        let mut slope = Slope::default();
         let mut from = 0;
         for atom in &self.mobile {
             let listed = &self.blocks[from..atom.end];

@@ -7,8 +7,8 @@
 //! The same pose takes the first copy to the second and any copy to the next, so its score is that of each pair of
 //! neighbours.
 //!
-//! Where the molecule is moved by C under the axis, or the axis by C over the molecule, M becomes C M C^-1. This varies
-//! a ring and keeps it a ring.
+//! If the molecule is moved by C under the axis, or the axis by C over the molecule, M becomes C M C^-1. This varies a
+//! ring and keeps it a ring.
 //!
 //! Dihedral symmetry Dn is a ring of two whose molecule is itself a ring of n. A half-turn about an axis that crosses
 //! the ring's own at a right angle ([`RingAxis`]) lays one ring face to face with the other.
@@ -33,7 +33,7 @@ const MAX_FOLDS: usize = 12;
 /// of its translation is added, which is long where the file's origin is far.
 const OFF: f64 = 1e-6;
 
-/// How copies of a molecule stand to each other: Cn, n of them about an axis, or Dn, two rings of n face to face.
+/// Symmetry of the copies of a molecule: Cn, n of them about an axis, or Dn, two rings of n face to face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Symmetry {
     /// Molecules that a pose relates: of Dn the two rings.
@@ -91,7 +91,7 @@ impl Symmetry {
         (self.folds > 1).then_some(self.folds)
     }
 
-    /// Number of copies of what is docked: n of Cn, of Dn the two rings.
+    /// Number of copies of the docked molecule: n for Cn, the two rings for Dn.
     pub fn copies(self) -> usize {
         self.copies
     }
@@ -176,7 +176,7 @@ pub fn conjugated(
     motion.after(pose).after(&motion.inverse())
 }
 
-/// What a score gains by small shifts (per Å) and turns about `center` (per radian) of [`conjugated`], given its
+/// Gradient of a score by small shifts (per Å) and turns about `center` (per radian) of [`conjugated`], given its
 /// gradient at `pose` by the ligand's own.
 pub fn conjugated_gradient(
     pose: &Pose,

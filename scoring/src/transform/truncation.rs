@@ -1,4 +1,4 @@
-//! Truncation at run time: which of a correlation's modes are kept, and what leaving out the rest costs.
+//! Truncation at run time: the modes of a correlation that are kept, and the error without the rest.
 //!
 //! # Conventions
 //!
@@ -9,7 +9,7 @@
 //! - A magnitude is |G^(w)| / volume of a stored mode: what that frequency and its conjugate each add to a value at
 //!   most.
 
-use super::modes::ModeSet;
+use super::modes::{Column, ModeSet};
 
 /// Which modes come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -61,8 +61,7 @@ impl Selection {
         Self::first(modes, &groups, most)
     }
 
-    /// At most `most` modes by falling magnitude, a group standing where its mean square puts it; ties go by place in
-    /// the set.
+    /// At most `most` modes by falling magnitude, groups by their mean square; ties go by place in the set.
     ///
     /// `magnitudes` has one value for each mode of the set.
     ///
@@ -113,8 +112,8 @@ impl Selection {
     }
 }
 
-/// Root mean square, over all translations of the box, of what the modes outside of a selection add to a correlation:
-/// by Parseval the root of the sum of their squared magnitudes.
+/// Root mean square, over all translations of the box, of the part of a correlation outside of a selection of modes: by
+/// Parseval the root of the sum of their squared magnitudes.
 ///
 /// At one translation magnitudes bound an error by their sum alone, which has all modes in phase and is too wide to use.
 ///
@@ -138,12 +137,8 @@ pub fn rms_left_out(modes: &ModeSet, selection: &Selection, magnitudes: &[f64]) 
 
 /// Number of modes in a set, conjugates counted.
 pub fn total(modes: &ModeSet) -> usize {
-    let plane: usize = modes
-        .columns
-        .iter()
-        .filter(|c| c.kz == 0)
-        .map(|c| c.len())
-        .sum();
+    let plane = modes.columns.iter().filter(|column| column.kz == 0);
+    let plane: usize = plane.map(Column::count).sum();
     2 * modes.count - plane
 }
 

@@ -12,8 +12,8 @@
 //!
 //! A pose takes a ligand knot at y to R y + t in the receptor's file frame; force per Å, torque per radian about the
 //! ligand's centre. Modes are counted with their conjugates, and the lifted axis is summed over. All sums run in f64.
-//! The polynomial repeats with the box. Where the ligand's centre lies outside the box, whose edge no contact reaches,
-//! value and gradient are zero.
+//! The polynomial repeats with the box. With the ligand's centre outside the box, whose edge no contact reaches, value
+//! and gradient are zero.
 
 mod components;
 mod layout;
@@ -43,8 +43,7 @@ pub struct TruncatedCorrelation {
 }
 
 impl TruncatedCorrelation {
-    /// Takes the selected modes of a correlation ([`crate::quantity::Quantity`] says of what: score, slice or
-    /// sensitivity).
+    /// Takes the selected modes of a correlation, of any [`crate::quantity::Quantity`].
     pub fn new(
         plan: &Plan,
         spectra: &ReceptorSpectra,
@@ -133,11 +132,16 @@ impl TruncatedCorrelation {
                 &mut values,
             );
         });
-        RotationSpectrum::new(Arc::clone(&self.layout), self.frame, *rotation, values)
+        RotationSpectrum {
+            layout: Arc::clone(&self.layout),
+            frame: self.frame,
+            rotation: *rotation,
+            values,
+        }
     }
 }
 
-/// Where the two bodies lie.
+/// Places of the two bodies.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     pub receptor_center: Vector3<f64>,
@@ -188,20 +192,6 @@ pub struct RotationSpectrum {
 }
 
 impl RotationSpectrum {
-    fn new(
-        layout: Arc<Layout>,
-        frame: Frame,
-        rotation: UnitQuaternion<f64>,
-        values: Vec<Harmonic>,
-    ) -> Self {
-        Self {
-            layout,
-            frame,
-            rotation,
-            values,
-        }
-    }
-
     /// A correlation whose spectrum is known from elsewhere, a grid for instance: `mode` gives G^(w) / volume by place
     /// in the set, and must be that of a real function. Both bodies have their centres at the origin and the rotation
     /// is none, so that a pose's translation is the place in the box at which the correlation is read.
@@ -211,13 +201,16 @@ impl RotationSpectrum {
         mode: impl Fn(usize) -> Complex64,
     ) -> Self {
         let layout = Layout::new(modes, selection);
-        let values = layout.harmonics_of(1.0, mode);
-        let frame = Frame {
-            receptor_center: Vector3::zeros(),
-            ligand_center: Vector3::zeros(),
-            half: Vector3::from(modes.lengths) * 0.5,
-        };
-        Self::new(Arc::new(layout), frame, UnitQuaternion::identity(), values)
+        Self {
+            frame: Frame {
+                receptor_center: Vector3::zeros(),
+                ligand_center: Vector3::zeros(),
+                half: Vector3::from(modes.lengths) * 0.5,
+            },
+            rotation: UnitQuaternion::identity(),
+            values: layout.harmonics_of(1.0, mode),
+            layout: Arc::new(layout),
+        }
     }
 
     /// Buffers for [`Self::gradient`], where no `TruncatedCorrelation` has made them.

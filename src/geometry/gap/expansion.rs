@@ -45,14 +45,9 @@ pub struct Candidate {
 }
 
 impl Expansion {
-    /// Number of functions: the rank.
-    pub fn len(&self) -> usize {
+    /// Number of functions.
+    pub fn rank(&self) -> usize {
         self.radial.len()
-    }
-
-    /// Whether there are no functions.
-    pub fn is_empty(&self) -> bool {
-        self.radial.is_empty()
     }
 
     /// The expansion of least rank that keeps the tolerance; of rank `RANK` where none does.
@@ -122,7 +117,7 @@ impl Expansion {
         output: &mut [Complex64],
         value: impl Fn(usize, usize) -> Complex64,
     ) {
-        let functions = self.len();
+        let functions = self.rank();
         frequencies.for_each(|place, square| {
             let kernel = &self.kernel[square * functions..(square + 1) * functions];
             output[place] = kernel

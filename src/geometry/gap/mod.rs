@@ -267,7 +267,6 @@ impl Scene {
                 ways::direct(&points)
             });
         }
-        let half = frequencies.half();
         let mut product = vec![Complex64::default(); n * n * (n / 2 + 1)];
         let volume = self.edge.powi(3);
         for (index, (a, b)) in spectra[0].iter().zip(&spectra[1]).enumerate() {
@@ -276,7 +275,6 @@ impl Scene {
             if kx.unsigned_abs() as usize == n / 2 || ky.unsigned_abs() as usize == n / 2 {
                 continue;
             }
-            debug_assert!((kz as usize) < half[2]);
             product[(kz as usize * n + place(ky, n)) * n + place(kx, n)] = a * b.conj() / volume;
         }
         Ok(product)

@@ -1,7 +1,7 @@
 //! Two ways from balls to the spectrum of their summed bumps without a grid, both through an [`Expansion`] of the
-//! radius: direct Fourier sums (NDFT), or a fast transform (NFFT) for each function of the radius.
+//! radius.
 //!
-//! Both end with the product with the kernel and the sum over the functions of the radius, and give the same numbers.
+//! They are direct Fourier sums (NDFT), or a fast transform (NFFT) for each function of the radius. Both end with the product with the kernel and the sum over the functions of the radius, and give the same numbers.
 
 use super::expansion::Expansion;
 use super::spectrum::{Body, FrequencyBox};
@@ -91,7 +91,7 @@ pub fn planned(points: &Points, tolerance: f64) -> Result<Fast, Error> {
     Ok(Fast {
         sorted: plan.locate(&points.centers).map_err(refused)?,
         work: plan.workspace(),
-        sums: vec![vec![Complex64::default(); plan.mode_count()]; points.expansion.len()],
+        sums: vec![vec![Complex64::default(); plan.mode_count()]; points.expansion.rank()],
         plan,
     })
 }
@@ -101,8 +101,8 @@ pub fn planned(points: &Points, tolerance: f64) -> Result<Fast, Error> {
 /// # Errors
 /// [`Error`] if a centre is not finite.
 pub fn fast(points: &Points, fast: &mut Fast) -> Result<Vec<Complex64>, Error> {
-    let located = fast.plan.locate_into(&points.centers, &mut fast.sorted);
-    located.map_err(refused)?;
+    let sorted = fast.plan.locate_into(&points.centers, &mut fast.sorted);
+    sorted.map_err(refused)?;
     for (weights, sums) in points.weights.iter().zip(&mut fast.sums) {
         fast.plan
             .forward(&fast.sorted, weights, &mut fast.work, sums)

@@ -32,7 +32,7 @@ pub fn product(a: &Bracket, poses: &[Pose], options: &MorphologyOptions) -> Resu
     })
 }
 
-/// The quotient over poses, at least one: the points that lie in A in each of them. Its eps is measured.
+/// The quotient over poses, at least one: the points that are in A in each of them. Its eps is measured.
 ///
 /// By duality: the complement of the product of the complement of A.
 ///

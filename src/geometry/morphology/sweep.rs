@@ -1,9 +1,9 @@
 //! Sweeps: all points that a solid passes on a path of poses, with tolerances.
 //!
 //! Between two poses of the path the motion is the geodesic: the rotation turns at a constant rate and the translation
-//! moves on a straight line. On a step of angle theta and translation dt a point x moves by theta |x| + |dt| at most, so
-//! that every point of the step is within half of that of a sampled pose. Outer balls grow by it, each by what its own
-//! centre may move, since a ball turns about its centre unseen. Inner balls are those of the samples alone.
+//! moves on a straight line. On a step of angle theta and translation dt a point x moves by theta |x| + |dt| at most.
+//! Every point of the step is within half of that of a sampled pose. Outer balls grow by it, each by the motion of its
+//! own centre, since a ball turns about its centre unseen. Inner balls are those of the samples alone.
 //!
 //! A tolerance R lets each pose vary within the geodesic ball of that radius, sqrt(2 theta^2 + |dt|^2) <= R (B&I, eq. 59).
 //! A point x then moves by R sqrt(|x|^2 / 2 + 1) at most, which outer balls grow by. Translations alone reach R in every

@@ -1,4 +1,4 @@
-//! Balls without those that lie in another one.
+//! Balls without those that are in another one.
 //!
 //! Balls come in blocks, the largest first. What the balls kept so far hold is dropped at once. The rest of a block is
 //! held against itself and then waits; when as many wait as half of those kept, all are held against each other. So the

@@ -1,7 +1,7 @@
 //! Products of the receptor's spectra with the ligand's, and their way back to the grid.
 //!
 //! The images of one ligand's transform go through together. A column of modes and the one with -ky are multiplied for
-//! all of them while both lie in the cache.
+//! all of them while both are in the cache.
 
 use super::PLANES;
 use super::transforms::{Buffers, Transforms};

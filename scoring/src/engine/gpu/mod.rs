@@ -31,7 +31,7 @@ pub struct GpuEngine {
     batch: Batch,
     buffers: Buffers,
     stages: Stages,
-    /// Å to cells of the block, per axis, and where the block's centre lies in it.
+    /// Å to cells of the block, per axis, and the block's centre in it.
     scale: [f64; 3],
     center: [f64; 3],
     /// From the axes of the receptor's file to the grid's.
@@ -281,7 +281,7 @@ impl GpuEngine {
         batches
     }
 
-    /// The commands of a batch as far as so many stages; its turns and images are on their way.
+    /// The commands of the first `stages` stages of a batch, whose turns and images are written to the card.
     fn encode(&self, turns: &[Turn], images: &[Image], stages: usize) -> wgpu::CommandEncoder {
         let mut rows: Vec<[f32; 4]> = Vec::with_capacity(3 * self.batch.turns);
         let mut table: Vec<[u32; 2]> = Vec::with_capacity(images.len());

@@ -84,7 +84,7 @@ pub struct Plan {
     axis: LiftedAxis,
     axis_error: f64,
     basis: RadiusBasis,
-    /// Whether grown balls have weights of their own, so that each function of the radius counts twice.
+    /// Whether grown balls have separate weights, so that each function of the radius counts twice.
     layered: bool,
     modes: Arc<ModeSet>,
     spacing: f64,

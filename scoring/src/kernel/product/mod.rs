@@ -69,11 +69,11 @@ pub enum Body {
     DoubleSkin,
 }
 
-/// The functions of a body whose grown balls have weights of their own: one weight does not serve the double skin.
+/// The functions of a body whose grown balls have separate weights.
 pub const LAYERS: [Body; 2] = [Body::Solid, Body::Grown];
 
-/// What a fold of the slices is as a sum of products: receptor's function, ligand's function, factor. Derivatives by
-/// the offset have none: they are taken along the lifted axis, which the product kernel lacks.
+/// A quantity as a sum of products: receptor's function, ligand's function, factor. Derivatives by the offset have none:
+/// they are taken along the lifted axis, which the product kernel lacks.
 pub fn factors(fold: Quantity) -> &'static [(Body, Body, f64)] {
     use Body::{DoubleSkin, Grown, Solid};
     match fold {

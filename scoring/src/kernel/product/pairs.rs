@@ -1,5 +1,4 @@
-//! One pair of radii of the product kernel: its reach, its table over distance, and what its modes hold beyond a
-//! frequency.
+//! One pair of radii of the product kernel: its reach, its table over distance, and its modes beyond a frequency.
 
 use super::LAYERS;
 use super::{Band, ProductKernel};

@@ -1,4 +1,4 @@
-//! Overlap energy by Fourier modes (B&I eq. 50), with a bound on what the modes left out can add.
+//! Overlap energy by Fourier modes (B&I eq. 50), with a bound on the modes left out.
 //!
 //! In a cube of edge L that holds both bodies wherever they meet, with f^ the transform of a body's summed bumps at its
 //! pose,
@@ -47,13 +47,13 @@ pub struct OverlapModes {
     b: Body,
     /// By block of shells: transform of A, smoothed, at +k and -k of each entry, over the volume.
     spectra: Vec<Vec<[[f64; 2]; 2]>>,
-    /// Energy of A's function, smoothed, beyond so many blocks.
+    /// Energy of A's function, smoothed, beyond each number of blocks.
     tails_a: Vec<f64>,
     /// Self-overlap of B and its error.
     norm_b: [f64; 2],
-    /// Bound of all roundings of so many blocks.
+    /// Bound of all roundings of each number of blocks.
     rounding: Vec<f64>,
-    /// Bound of the rounding of B's own energy in so many blocks.
+    /// Bound of the rounding of B's own energy in each number of blocks.
     rounding_b: Vec<f64>,
     not_negative: bool,
     margin: f64,
@@ -64,7 +64,7 @@ pub struct OverlapModes {
 impl OverlapModes {
     /// The modes of two ball sets: the lowest, at most `most` of them, conjugates counted.
     ///
-    /// Takes O(n^2) for the self-overlap of each body and O(modes x balls of A). Memory: 8 bytes a ball and shell, of
+    /// Takes O(n^2) for the self-overlap of each body and O(modes x balls of A). Memory: 8 bytes per ball and shell, of
     /// which there are about 0.4 `most`^(2/3).
     ///
     /// # Errors
@@ -204,7 +204,7 @@ fn both_signs([cr, ci, sr, si]: &Sums) -> [[f64; 2]; 2] {
     [[cr + si, ci - sr], [cr - si, ci + sr]]
 }
 
-/// What a margin does to A's transform: psi^(D |w|) / psi^(0).
+/// Factors of a margin on A's transform: psi^(D |w|) / psi^(0).
 struct Smoothing {
     margin: f64,
     volume: f64,

@@ -1,4 +1,4 @@
-//! The sum over modes at one pose, block by block, with the bound of what is left.
+//! The sum over modes at one pose, block by block, with the bound of the rest.
 
 use super::lattice::{Entry, Lattice};
 use super::spectrum::{Body, Phases, Sums};

@@ -8,7 +8,7 @@
 //! with a minus.
 //!
 //! The filter of the ranking kernel is applied to k (`kernel::radial_filter`). So k ends at the same reach
-//! and the same frequency as shape, and an effect needs no grid, modes or cell list of its own. In the Fourier domain
+//! and the same frequency as shape, and an effect needs no further grid, modes or cell list. In the Fourier domain
 //! it adds one function of the ligand for each class. The engine compresses these together with those of shape. An
 //! effect that is off adds none.
 //!

@@ -83,7 +83,7 @@ pub fn atom_kinds() -> &'static [&'static str] {
 /// The expected frequency follows from the shares of the kinds. A share is the geometric mean of two: that among all
 /// atoms (the mole fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726) and that among
 /// all partners (the quasi-chemical approximation of Miyazawa & Jernigan, J. Mol. Biol. 256 (1996) 623-644). So
-/// energies contain half of what a kind gains by being buried.
+/// energies contain half of a kind's gain by being buried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Energies>", into = "Vec<Energies>")]
 pub struct AtomPairPotential(Vec<Energies>);

@@ -1,6 +1,6 @@
 //! Two bodies of typed atoms, and sums over their pairs within a reach.
 
-use crate::blocks::{Blocks, Near};
+use crate::blocks::{Blocks, NearPoints};
 use crate::rigid_move::center;
 use crate::se3::Pose;
 use crate::vectorized::with_simd;
@@ -62,7 +62,7 @@ impl Bodies {
         let matrix = pose.rotation.to_rotation_matrix();
         let place =
             pose.rotation * bodies.ligand_center + pose.translation - bodies.receptor_center;
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         let mut total = 0.0;
         for &(atom, kind) in &bodies.ligand {
             let mut sum = 0.0;
@@ -134,7 +134,7 @@ impl Side {
         pose: &Pose,
         point: [f64; 3],
         reach: f64,
-        near: &mut Near,
+        near: &mut NearPoints,
         mut visit: impl FnMut(usize),
     ) {
         let x = (Vector3::from(pose.apply(point)) - self.middle).into();
@@ -149,7 +149,7 @@ impl Side {
     }
 
     /// Whether any of the atoms is in contact with an atom of the other side; `pose` carries the atom into this frame.
-    pub fn touches(&self, pose: &Pose, atom: [f64; 3], near: &mut Near) -> bool {
+    pub fn touches(&self, pose: &Pose, atom: [f64; 3], near: &mut NearPoints) -> bool {
         let mut touches = false;
         self.near(pose, atom, TOUCHING, near, |_| touches = true);
         touches
@@ -170,8 +170,8 @@ impl Sides {
         }
     }
 
-    /// Sum at a pose over the groups of atoms of receptor and ligand that are in contact with the other side, of a value
-    /// of each. The positions of a group's atoms are those of its own file (Å).
+    /// Sum at a pose of the values of the groups of atoms of receptor and ligand that are in contact with the other side.
+    /// Positions of atoms are those of their file (Å).
     pub fn sum_in_contact<G>(
         &self,
         [of_receptor, of_ligand]: &[Vec<G>; 2],
@@ -179,7 +179,7 @@ impl Sides {
         atoms: impl Fn(&G) -> &[[f64; 3]],
         value: impl Fn(&G) -> f64,
     ) -> f64 {
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         let mut sum = |side: &Side, groups: &[G], pose: &Pose| {
             let mut touches = |atom: &[f64; 3]| side.touches(pose, *atom, &mut near);
             let touching = groups

@@ -1,8 +1,8 @@
-//! Pose term `restraints_penalty`: what a pose pays for the distance restraints that it violates.
+//! Pose term `restraints_penalty`: the cost of violated distance restraints.
 //!
 //! A restraint is on the effective distance of its pairs of atoms ([`super::effective_distance`]). It is satisfied
-//! within its bounds, and violated by what the distance misses them by. Where some restraints may be false, only so
-//! many of them have to be satisfied: those that are violated least count, and the others are free.
+//! within its bounds, and otherwise violated by the distance to them. If some restraints may be false, only a number of
+//! them has to be satisfied: those that are violated least count, and the others are free.
 //!
 //! The penalty grows in proportion to the violation. A pose of the search may be 2 to 4 Å from the nearest sampled
 //! one, so that a penalty by squares would refuse poses for the coarseness of the search.
@@ -38,7 +38,7 @@ pub struct DistanceRestraint {
     pub upper: f64,
 }
 
-/// Restraints of which so many have to be satisfied.
+/// Restraints of which a number has to be satisfied.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DistanceRestraints {
     /// The restraints.

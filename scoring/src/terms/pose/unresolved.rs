@@ -7,7 +7,7 @@
 
 use super::bodies::Side;
 use super::{PoseTerm, TermDefinition, UNRELAXED};
-use crate::blocks::Near;
+use crate::blocks::NearPoints;
 use crate::rigid_move::center;
 use crate::se3::Pose;
 use knotdock_structures::{Conformers, Knots};
@@ -89,7 +89,7 @@ impl Body {
 /// `pose` carries the body into the frame of the segments, and `inverse` carries them into its own.
 fn clashes(body: &Body, segments: &[Occupancy], pose: &Pose, inverse: &Pose) -> f64 {
     let mut sum = 0.0;
-    let mut near = Near::default();
+    let mut near = NearPoints::default();
     for segment in segments {
         let (rotation, translation) = segment.cells_from(pose, body.center);
         body.side

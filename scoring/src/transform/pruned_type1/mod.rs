@@ -92,7 +92,7 @@ impl<T: Real> Forward<T> {
         }
     }
 
-    /// Where the block's centre lies, in cells from the box's origin: knots are given relative to it.
+    /// The block's centre in cells from the box's origin: knots are given relative to it.
     pub fn center(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| 0.5 * (self.block[axis] as f64 - 1.0))
     }
@@ -172,7 +172,7 @@ impl<T: Real> Forward<T> {
     /// The whole transform with the window divided out, for one set-up call: `output` is `[component][mode]`.
     ///
     /// # Panics
-    /// Where a knot lies outside the planned block.
+    /// If a knot is outside the planned block.
     pub fn transform(
         &self,
         points: &[[f64; 3]],

@@ -1,6 +1,6 @@
 //! The ligand atoms near the receptor, their pairs, and the interface's centre and radius.
 
-use crate::blocks::{Blocks, Near};
+use crate::blocks::{Blocks, NearPoints};
 use crate::rigid_move::Move;
 use crate::se3::Pose;
 use crate::vectorized::with_simd;
@@ -48,7 +48,7 @@ pub struct Workspace {
     /// Centre of the interface relative to the receptor's, Å.
     pub(super) middle: Vector3<f64>,
     /// Receptor atoms near one of them.
-    near: Near,
+    near: NearPoints,
     /// Violations of distance restraints, Å.
     pub(in crate::terms::pose) violations: Vec<f64>,
 }
@@ -63,7 +63,7 @@ pub(super) struct Pair<'a> {
     pub square: f64,
 }
 
-/// Where the ligand stands before any move, relative to the receptor's centre.
+/// Place of the ligand before any move, relative to the receptor's centre.
 pub(super) struct Start {
     matrix: Matrix3<f64>,
     place: Vector3<f64>,
@@ -88,7 +88,7 @@ impl Workspace {
 }
 
 impl Atoms {
-    /// Where the ligand stands at a pose.
+    /// Place of the ligand at a pose.
     pub(super) fn start(&self, pose: &Pose) -> Start {
         Start {
             matrix: *pose.rotation.to_rotation_matrix().matrix(),
@@ -215,16 +215,12 @@ impl Atoms {
     /// Sums over the weighted middles of all pairs.
     #[inline(always)]
     fn middles<S: Simd>(&self, simd: S, workspace: &mut Workspace) -> MiddleSums {
-        let mut sums = MiddleSums {
-            count: 0.0,
-            sum: Vector3::zeros(),
-            squares: 0.0,
-        };
+        let mut sums = MiddleSums::default();
         let from = workspace.middle;
         self.visit(
             simd,
             workspace,
-            &Move::none(),
+            &Move::default(),
             #[inline(always)]
             || (),
             #[inline(always)]
@@ -261,6 +257,7 @@ impl Atoms {
 }
 
 /// Sums of weights, of weighted middles (Å) and of the squares of their distances from the receptor's centre (Å²).
+#[derive(Default)]
 struct MiddleSums {
     count: f64,
     sum: Vector3<f64>,

@@ -17,7 +17,7 @@ use self::list::{Atoms, Interface, Site};
 use super::TermDefinition;
 use super::atom_pair::{AtomPairPotential, EnergyTable, SMOOTH_REACH};
 use crate::blocks::Blocks;
-use crate::rigid_move::{Derivatives, Move, center};
+use crate::rigid_move::{Derivatives, Move, center, heavy_atoms};
 use crate::se3::Pose;
 use crate::vectorized::with_simd;
 use knotdock_structures::Knots;
@@ -44,17 +44,13 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 
 /// Depth in Å by which two atoms may overlap at no cost.
 const OVERLAP: f64 = 0.1;
-/// Stiffness of further overlap, RT per Å². It is soft, because atoms of unbound surfaces stand where the other
-/// body's will be.
+/// Stiffness of further overlap, RT per Å². It is soft, because atoms of unbound surfaces are in the way of the other
+/// body's.
 const STIFFNESS: f64 = 0.8;
 /// Stiffness during the descent. It is softer still, so that single overlaps do not hold back the whole interface.
 const SOFT_CORE_STIFFNESS: f64 = 0.2;
 /// Overlap in Å from which a pair adds its whole stiffness to the curvature that a step reads.
 const FULL_STIFFNESS: f64 = 0.5;
-/// Largest radius in Å of a hydrogen. Hydrogens overlap the atoms that they bond to, so they do not count where a
-/// file keeps them.
-const HYDROGEN: f64 = 1.15;
-
 /// Two bodies prepared for relaxing poses.
 ///
 /// The energy of a pose in RT is a sum over pairs of atoms at distance d, of radii r and kinds a and b:
@@ -118,10 +114,10 @@ impl Relaxation {
         -self.weight * self.relax(pose, workspace).energy
     }
 
-    /// Energy of a pose as it stands in RT.
+    /// Energy of a pose without a move in RT.
     #[cfg(test)]
     pub fn energy(&self, pose: &Pose) -> f64 {
-        let (start, none) = (self.atoms.start(pose), Move::none());
+        let (start, none) = (self.atoms.start(pose), Move::default());
         let mut workspace = Workspace::default();
         self.atoms
             .collect(&start, &Vector3::zeros(), &none, &mut workspace);
@@ -130,7 +126,7 @@ impl Relaxation {
 
     /// Relaxed pose with its energy, which is never above that of `pose`.
     pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
-        let (start, none) = (self.atoms.start(pose), Move::none());
+        let (start, none) = (self.atoms.start(pose), Move::default());
         self.atoms
             .collect(&start, &Vector3::zeros(), &none, workspace);
         let Some(Interface { middle, radius }) = self.atoms.interface(workspace) else {
@@ -214,17 +210,12 @@ impl Relaxation {
     #[inline(always)]
     fn slope_with<S: Simd>(&self, simd: S, workspace: &mut Workspace, at: &Move) -> Slope {
         let atoms = &self.atoms;
-        let mut slope = Slope::zero();
+        let mut slope = Slope::default();
         atoms.visit(
             simd,
             workspace,
             at,
-            #[inline(always)]
-            || AtomSlope {
-                gradient: Vector3::zeros(),
-                curvature: Matrix3::zeros(),
-                contacts: 0.0,
-            },
+            AtomSlope::default,
             #[inline(always)]
             |sums, atom, pair| {
                 let Soft {
@@ -295,6 +286,7 @@ struct Soft {
 }
 
 /// Sums over the pairs of one ligand atom.
+#[derive(Default)]
 struct AtomSlope {
     gradient: Vector3<f64>,
     curvature: Matrix3<f64>,
@@ -304,11 +296,8 @@ struct AtomSlope {
 /// The atoms of a set of knots other than hydrogens, relative to its centre. `unknown` is the kind of atoms without a
 /// kind.
 fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f64>, Site)> {
-    let atoms = knots.centers.iter().zip(&knots.radii).enumerate();
-    let atoms = atoms.filter(|(_, (_, radius))| **radius > HYDROGEN);
-    atoms
-        .map(|(index, (&x, &radius))| {
-            let position = Vector3::from(x) - middle;
+    heavy_atoms(knots, middle)
+        .map(|(index, position, radius)| {
             let kind = knots.atom_kinds.get(index).copied().flatten();
             let kind = kind.map_or(unknown, |kind| usize::from(kind).min(unknown));
             (position, Site { radius, kind })
@@ -325,6 +314,7 @@ pub(super) const LONGEST: [f64; 6] = [0.7, 0.455, 0.296, 0.192, 0.125, 0.081];
 const DAMPING: [f64; 2] = [0.05, 2.0];
 
 /// Derivatives of the energy of a move, and its contacts.
+#[derive(Default)]
 pub(super) struct Slope {
     /// Derivatives; the curvature is that of the overlaps along the lines between their atoms: positive semidefinite.
     pub by_step: Derivatives,
@@ -333,14 +323,6 @@ pub(super) struct Slope {
 }
 
 impl Slope {
-    /// Slope of nothing.
-    pub fn zero() -> Self {
-        Self {
-            by_step: Derivatives::zero(),
-            contacts: 0.0,
-        }
-    }
-
     /// Adds an atom at `arm`, with the gradient and curvature by its position.
     #[inline(always)]
     pub fn add(&mut self, arm: &Vector3<f64>, gradient: &Vector3<f64>, curvature: &Matrix3<f64>) {

@@ -82,7 +82,7 @@ fn collected(relaxation: &Relaxation, pose: &Pose) -> Option<(Workspace, Interfa
     let start = relaxation.atoms.start(pose);
     relaxation
         .atoms
-        .collect(&start, &Vector3::zeros(), &Move::none(), &mut workspace);
+        .collect(&start, &Vector3::zeros(), &Move::default(), &mut workspace);
     let interface = relaxation.atoms.interface(&mut workspace)?;
     Some((workspace, interface))
 }
@@ -96,7 +96,7 @@ fn the_slope_is_that_of_the_energy() {
         Vector3::new(0.3, -0.2, 0.1),
         Vector3::new(0.02, 0.05, -0.03),
     );
-    for at in [Move::none(), Move::none().then_by_halves(shift, turn)] {
+    for at in [Move::default(), Move::default().then_by_halves(shift, turn)] {
         let slope = relaxation.slope(&mut workspace, &at);
         let mut energy =
             |shift, turn| soft_energy(&relaxation, &mut workspace, &at.then_by_halves(shift, turn));
@@ -128,7 +128,7 @@ fn collected_pairs_add_up_to_the_energy() {
             assert_eq!(energy, 0.0);
             continue;
         };
-        let mut was = Move::none();
+        let mut was = Move::default();
         let start = relaxation.atoms.start(&pose);
         let widest = relaxation.atoms.widest(&start, &middle);
         let steps = [0.0, 0.1, 0.3, 1.2].map(|by| Vector3::new(by, 0.4 * by, -by));

@@ -12,7 +12,7 @@ const FAR: f64 = 16.0;
 /// Lower bounds of the distance to a body's atoms, by cells of space.
 ///
 /// Most atoms of a ligand are far from the receptor, and a look at one cell shows it.
-pub(super) struct Nearness {
+pub(super) struct DistanceFloors {
     low: Vector3<f64>,
     edge: f64,
     counts: [usize; 3],
@@ -20,7 +20,7 @@ pub(super) struct Nearness {
     bounds: Vec<f32>,
 }
 
-impl Nearness {
+impl DistanceFloors {
     /// Bounds about some points (Å).
     pub fn new(points: impl Iterator<Item = Vector3<f64>> + Clone) -> Self {
         let ends = points.clone().fold(None, |ends, point| {
@@ -92,7 +92,7 @@ mod tests {
             let mut point = |size: f64| Vector3::from_fn(|_, _| size * (numbers.next() - 0.5));
             let mut atoms: Vec<Vector3<f64>> = (0..200).map(|_| point(30.0)).collect();
             atoms.push(Vector3::new(spread, 0.0, 0.0));
-            let near = Nearness::new(atoms.iter().copied());
+            let near = DistanceFloors::new(atoms.iter().copied());
             assert!(near.bounds.len() as f64 <= MOST_CELLS);
             let (mut far, mut excluded) = (0, 0);
             for _ in 0..2000 {
