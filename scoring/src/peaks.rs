@@ -96,9 +96,8 @@ impl ScoreGrid {
 
     /// Appends the best voxels to `found`, best first.
     ///
-    /// Each is at least [`NEIGHBOURS`] + 1 voxels from the others along some axis of the periodic grid. Ties go to the
-    /// lower voxel. Fewer are found if the neighbourhoods of those found leave nothing. Scores around peaks are
-    /// overwritten with minus infinity. Scores must not be NaN.
+    /// Each is at least [`NEIGHBOURS`] + 1 voxels from the others along some axis of the periodic grid; ties go to the
+    /// lower voxel. Scores around peaks are overwritten with minus infinity. Scores must not be NaN.
     pub fn find_peaks(&mut self, rotation: u32, limits: PeakLimits, found: &mut Vec<Peak>) {
         self.find_peaks_among(rotation, limits, found, &mut |_, _| false);
     }

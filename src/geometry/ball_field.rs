@@ -106,11 +106,8 @@ impl BallField {
     }
 }
 
-/// The surface at depth zero: triangles anticlockwise from outside, positions in the frame of the files, where the
-/// balls' origin is at `origin`. A vertex lies within a cell of the surface, and features narrower than a cell may be
-/// missing.
-///
-/// Method: naive surface nets (Gibson, MICCAI 1998), by the crate fast-surface-nets.
+/// The surface at depth zero by naive surface nets (Gibson, MICCAI 1998), in the frame of the files, where the balls'
+/// origin is at `origin`. Vertices are within a cell of the surface; features narrower than a cell may be missing.
 pub fn surface(field: &BallField, origin: [f64; 3]) -> Surface {
     let grid = field.grid;
     let size = grid.shape.map(|count| count as u32);

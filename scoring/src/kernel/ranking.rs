@@ -131,7 +131,7 @@ impl RankingKernel {
 
     /// Overlap of two coincident balls of radius sum sigma (Å) after the low-pass; without it, 1.
     ///
-    /// NearPoints or above 1 for balls that the resolution shows, falling like sigma^3 for smaller ones. Trim and window are
+    /// Near or above 1 for balls that the resolution shows, falling like sigma^3 for smaller ones. Trim and window are
     /// not in it.
     pub fn overlap_left(&self, sigma: f64) -> f64 {
         // Beyond this the transform is not tabulated, and the resolution shows all there is.

@@ -47,8 +47,7 @@ impl AddAssign for Overlap {
 
 /// A running sum over pairs of balls, all in the receptor's frame. It allocates nothing.
 ///
-/// Pairs that meet wait until there are eight, which are then summed together. The same pairs in the same order give
-/// the same bits, whether they come one by one or by leaves.
+/// Pairs that meet are summed in eights. The same pairs in the same order give the same bits, one by one or by leaves.
 #[derive(Clone, Debug)]
 pub struct Accumulator<'a> {
     kernel: &'a PairOverlap,

@@ -39,11 +39,9 @@
 //! The force is -dE/dt on body B, the torque minus the slope of E by a turn of B about a chosen point, both in A's
 //! frame. Body A feels the opposite. A pose takes a ball of B at y to R y + t.
 //!
-//! # Contact
-//!
-//! Bumps vanish with all their derivatives at the end of their ball. The energy of balls that graze underflows: with an
-//! overlap of 1e-9 of the radius it is 0 in f64. So grazing contact is decided by d < r + s ([`meet`],
-//! [`Overlap::pairs`]). An energy above its error shows a hit; an energy of 0 shows nothing.
+//! Bumps vanish with all their derivatives at the end of their ball, so the energy of balls that graze underflows:
+//! grazing contact is decided by d < r + s ([`meet`], [`Overlap::pairs`]). An energy above its error shows a hit; an
+//! energy of 0 shows nothing.
 
 mod accumulator;
 mod modes;

@@ -11,14 +11,13 @@ use std::f64::consts::PI;
 
 /// <psi_r, psi_s>(d) of any two radii, with its slope, for one exponent alpha.
 ///
-/// - alpha = 2: a table, built once in some 100 ms, and tens of nanoseconds a value with its slope. Errors are below 1e-8 of the
-///   value at d = 0, and those of the slope below 1e-5 of that over the larger radius, for every ratio of radii.
-/// - alpha from 2 to 4: the same table where it holds 5e-7 ([`Self::error`]), built in some 300 ms.
+/// - alpha = 2: a table, built in some 100 ms; tens of nanoseconds per value. Errors are below 1e-8 of the value at d = 0,
+///   and those of the slope below 1e-5 of that over the larger radius.
+/// - alpha from 2 to 4: the same table if it reaches 5e-7 ([`Self::error`]), built in some 300 ms.
 /// - alpha = infinity: the volume of the lens, in closed form.
-/// - Other exponents: quadrature, some microseconds a value, more the larger alpha is.
+/// - Other exponents: quadrature, some microseconds per value.
 ///
-/// The overlap is exactly 0 from d = r + s on. Just before that it underflows: two balls that overlap by 1e-9 of their
-/// radius have overlap 0 in f64, though they meet. Contact is decided by [`meet`], never by this value.
+/// The overlap is exactly 0 from d = r + s on, and underflows just before. So [`meet`] decides contact, never this value.
 #[derive(Clone, Debug)]
 pub struct PairOverlap {
     bump: Bump,
@@ -113,7 +112,7 @@ impl PairOverlap {
 /// Lens volume of balls of radii r and s, and its slope by the squared distance of their centres.
 ///
 /// The slope by the distance is -pi rho^2, rho the radius of the circle in which the spheres cross: 0 if one ball is in
-/// the other. Coincident equal balls have a kink, with slope 0 by symmetry.
+/// the other or both coincide.
 #[inline(always)]
 pub(super) fn lens_and_slope(r: f64, s: f64, square: f64) -> [f64; 2] {
     let distance = square.sqrt();

@@ -18,10 +18,9 @@
 //!
 //! # Descents
 //!
-//! [`SharpFit::descend`] is a Levenberg-Marquardt descent over the six rigid degrees of freedom. Its stiffness against
-//! overlap grows over three rounds, so that first the whole interface finds its place and then its atoms do.
-//! Quasi-Newton steps then lead to the minimum.
-//! [`SharpFit::best_near`] starts from a pose and from twelve places about it.
+//! [`SharpFit::descend`] is a Levenberg-Marquardt descent over the six rigid degrees of freedom, whose stiffness against
+//! overlap grows over three rounds. Quasi-Newton steps then lead to the minimum. [`SharpFit::best_near`] starts from a
+//! pose and from twelve places about it.
 //!
 //! Positions are relative to the bodies' centres. Lengths are in Å, energies in RT. Lower is better.
 

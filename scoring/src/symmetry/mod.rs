@@ -4,8 +4,7 @@
 //! the axis' direction, t the translation and p the axis' point nearest the origin. Then u.t = 0, t = p - R p and p =
 //! (t + cot(pi / n) u x t) / 2.
 //!
-//! The same pose takes the first copy to the second and any copy to the next, so its score is that of each pair of
-//! neighbours.
+//! Its score is that of each pair of neighbours.
 //!
 //! If the molecule is moved by C under the axis, or the axis by C over the molecule, M becomes C M C^-1. This varies a
 //! ring and keeps it a ring.

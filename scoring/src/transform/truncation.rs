@@ -63,10 +63,8 @@ impl Selection {
 
     /// At most `most` modes by falling magnitude, groups by their mean square; ties go by place in the set.
     ///
-    /// `magnitudes` has one value for each mode of the set.
-    ///
     /// # Panics
-    /// Where they are fewer or more.
+    /// Unless there is one magnitude per mode of the set.
     pub fn by_magnitude(modes: &ModeSet, magnitudes: &[f64], most: usize) -> Self {
         assert_eq!(magnitudes.len(), modes.count, "one magnitude a mode");
         let mut keyed: Vec<(f64, Group)> = groups(modes)
@@ -115,10 +113,8 @@ impl Selection {
 /// Root mean square, over all translations of the box, of the part of a correlation outside of a selection of modes: by
 /// Parseval the root of the sum of their squared magnitudes.
 ///
-/// At one translation magnitudes bound an error by their sum alone, which has all modes in phase and is too wide to use.
-///
 /// # Panics
-/// Where magnitudes or selection belong to another set.
+/// If magnitudes or selection belong to another set.
 pub fn rms_left_out(modes: &ModeSet, selection: &Selection, magnitudes: &[f64]) -> f64 {
     assert_eq!(magnitudes.len(), modes.count, "one magnitude a mode");
     assert_eq!(

@@ -1,7 +1,7 @@
 //! The correlation at one pose, without a grid: G(R, t) = sum_w G^(w; R) exp(2 pi i w.t) over m' chosen modes.
 //!
-//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes. B&I:
-//! section 4.1, eq. 50 for collision, the end of 4.2 for the score, Fig. 9 for times. There are two ways:
+//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes (B&I,
+//! section 4.1, eq. 50, and the end of 4.2). There are two ways:
 //!
 //! - [`TruncatedCorrelation::prepare`] sums the ligand's knots into the spectrum of one rotation. Each translation then
 //!   costs O(m') by [`RotationSpectrum::gradient`], with the force.

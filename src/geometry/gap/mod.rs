@@ -9,8 +9,8 @@
 //!   ([`ways`]), a product, and one transform back;
 //! - *truncated*: of the grid's product only the m' modes of lowest frequency, transformed back.
 //!
-//! A truncated function rings about zero, so it is compared with its own residual r: where it exceeds r the solids meet
-//! for certain. How far a point of the obstacle on the grid can lie from these is the Hausdorff error.
+//! A truncated function rings about zero: only where it exceeds its residual do the solids meet for certain. The
+//! Hausdorff error is the largest distance of a point of the obstacle from these points.
 //!
 //! Lengths are relative to the middle of A; B is turned before and about its own middle.
 

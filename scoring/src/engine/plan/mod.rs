@@ -193,8 +193,8 @@ impl Plan {
 
     /// Whether a ligand lies within the room that the plan gives it.
     pub(crate) fn holds_ligand(&self, ligand: &Knots) -> bool {
-        let distance = |x: &[f64; 3]| (Vector3::from(*x) - self.ligand_center).norm();
-        let room = self.ligand_radius * (1.0 + 1e-9) + 1e-9 * self.spacing;
+        let distance = |x: &[f64; 3]| (Vector3::from(*x) - self.ligand_center()).norm();
+        let room = self.ligand_radius() * (1.0 + 1e-9) + 1e-9 * self.spacing;
         ligand.centers.iter().all(|x| distance(x) <= room)
     }
 
@@ -441,11 +441,9 @@ impl Plan {
 
     /// Indices of the knots that the planned correlation cannot resolve.
     ///
-    /// The low-passed kernel scores every pair, but of balls much smaller than the resolution it sees little more than
-    /// points: the rest of their overlap falls like (radius / resolution)^3. The exact sum has the same low-pass, so no
-    /// error between the two shows it. These knots have less than a tenth of the overlap left if two of them coincide
-    /// (radii of 1.5 to 1.9 Å at a resolution of 4.5 Å have nine tenths or more). Without a low-pass their radius is
-    /// below the grid spacing.
+    /// Less than a tenth of the overlap of two such coincident balls is left after the low-pass (nine tenths or more for
+    /// radii of 1.5 to 1.9 Å at a resolution of 4.5 Å); it falls like (radius / resolution)^3. The exact sum has the same
+    /// low-pass, so no error shows it. Without a low-pass their radius is below the grid spacing.
     pub fn unresolved(&self, knots: &Knots) -> Vec<usize> {
         let is_lost = |radius: f64| match &self.pair {
             PairKernel::Product(kernel) if kernel.band() == Band::Whole => radius < self.spacing,

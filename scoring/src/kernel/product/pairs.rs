@@ -99,8 +99,6 @@ impl ProductKernel {
     /// Tables over distance of all pairs of a radius of `receptor` and one of `ligand`: `[receptor][ligand]`.
     ///
     /// Lanes are both balls as they are, the receptor's grown, the ligand's grown, both grown; in the unit of volumes.
-    ///
-    /// Under a low-pass they are sums over frequencies, whose waves all pairs share.
     pub fn layer_tables(&self, receptor: &[f64], ligand: &[f64]) -> Vec<Vec<Table<4>>> {
         match self.band {
             // Quadratures are exact and slow.

@@ -5,8 +5,8 @@
 //!
 //! E = L^-3 sum over w of f_A^(w) conj(f_B^(w)).
 //!
-//! Body A's transform is computed once. That of body B is summed at each pose, O(modes x balls of B), which gives energy
-//! and force; three more sums give the torque.
+//! Body A's transform is computed once, that of body B at each pose, O(modes x balls of B); three more sums give the
+//! torque.
 //!
 //! # Bounds
 //!
@@ -14,9 +14,7 @@
 //! these modes, is the self-overlap of the body (a sum over pairs) less the energy in the modes kept, which is known at
 //! every pose. The error of the pair kernel is added to T. The rounding bound counts all roundings of phases, amplitudes
 //! and sums as if they were in phase. So [`ModesOverlap::certifies_hit`] is never wrong: bumps with weights that are not
-//! negative and have an energy above 0 meet.
-//!
-//! An energy below the bounds shows nothing: modes certify a hit and never a miss.
+//! negative and have an energy above 0 meet. Modes never certify a miss.
 
 mod lattice;
 mod spectrum;
@@ -244,11 +242,8 @@ impl Smoothing {
 
 /// Bound of |psi^(q)| / psi^(0) from q on, for a bump of any exponent with integral `volume`.
 ///
-/// A bump is a mean of sharp balls of radius up to 1. The transform of a ball of radius rho is at most
-///
-/// 4 pi rho^3 (1 + z) / z^3, z = 2 pi rho q.
-///
-/// It is largest for rho = 1.
+/// A bump is a mean of sharp balls of radius rho up to 1, whose transforms are at most 4 pi rho^3 (1 + z) / z^3 with
+/// z = 2 pi rho q: largest for rho = 1.
 fn falling_bound(q: f64, volume: f64) -> f64 {
     let z = 2.0 * PI * q;
     (4.0 * PI * (1.0 + z) / (z * z * z) / volume).min(1.0)

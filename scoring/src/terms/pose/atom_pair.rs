@@ -26,9 +26,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 
 /// Minus the weighted potential (score per RT) over the pairs of two sets of knots with atom kinds.
 ///
-/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`. E_ab joins the table's energies by straight
-/// lines. It is constant below the first distance and falls to 0 over one step after the last. Atoms without a kind
-/// do not count.
+/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`, with E_ab by [`EnergyTable::at`]. Atoms without a
+/// kind do not count.
 pub(super) fn term(
     [receptor, ligand]: [&Knots; 2],
     potential: &AtomPairPotential,
@@ -244,8 +243,7 @@ impl EnergyTable {
 
     /// As [`Self::at`], averaged over the distances within a quarter of an Ångström: the derivative is continuous.
     ///
-    /// The average of straight lines over one step is the quadratic B-spline of their nodes. They end at
-    /// [`SMOOTH_REACH`].
+    /// It is the quadratic B-spline of the nodes and ends at [`SMOOTH_REACH`].
     #[inline(always)]
     pub fn smooth(&self, receptor: usize, ligand: usize, distance: f64) -> (f64, f64) {
         let nodes = &self.energies[receptor * self.kinds + ligand];

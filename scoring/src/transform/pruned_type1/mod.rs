@@ -4,14 +4,9 @@
 //! they occupy. The three one-dimensional transforms then skip the lines that hold nothing and the modes that are not
 //! kept. Several components (sets of weights on the same knots) go through together.
 //!
-//! How it differs from the general transform, [`super::nufft`]:
-//!
-//! - it takes lengths in Å relative to a block's centre, not fractions of a period;
-//! - it keeps the modes of a [`ModeSet`], not a box of them;
-//! - it runs in stages, component by component, so that an engine can use a column while it is in the cache;
-//! - it checks its input in debug builds alone;
-//! - it does not divide out the window's own transform: [`Forward::deconvolution`] gives the factors, which the caller
-//!   multiplies into its own.
+//! Unlike the general transform, [`super::nufft`], it takes lengths in Å relative to a block's centre and keeps the modes
+//! of a [`ModeSet`]. It runs in stages, component by component, so that an engine can use a column while it is in the
+//! cache. It does not divide out the window's own transform: [`Forward::deconvolution`] gives the factors.
 
 mod axes;
 
