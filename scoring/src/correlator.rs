@@ -32,9 +32,9 @@ const PROBE_SET: usize = 60;
 /// Largest tolerance of a plan.
 const MAX_TOLERANCE: f64 = 0.1;
 /// Plans that are tried for a tolerance.
-const MOST_PLANS: usize = 3;
+const MAX_PLANS: usize = 3;
 /// Most points of a finer plan's grid, in those of the first.
-const MOST_GROWTH: usize = 32;
+const MAX_GROWTH: usize = 32;
 /// Largest departure of a rotation's norm from 1.
 const NORM_TOLERANCE: f64 = 1e-6;
 
@@ -133,10 +133,10 @@ impl Correlator {
         }
         let mut plan = Plan::with_effects(receptor, ligand, options, tolerance, terms.clone())?;
         let points = |plan: &Plan| plan.size().iter().product::<usize>();
-        let most_points = MOST_GROWTH.saturating_mul(points(&plan));
+        let most_points = MAX_GROWTH.saturating_mul(points(&plan));
         let is_coarse = is_coarse(&plan);
         let mut reachable = f64::INFINITY;
-        for _ in 0..MOST_PLANS {
+        for _ in 0..MAX_PLANS {
             let planned_for = plan.options().tolerance;
             let found = Self::planned([receptor, ligand], plan, precision)?;
             let error = found.error;

@@ -9,7 +9,9 @@
 //! Both are the work of [`super::radial_filter`].
 
 use super::cone::{Cone, Trim};
-use super::options::{KernelError, KernelOptions, LONGEST, MAX_RING_LENGTH, SMALLEST, TRIM_LENGTH};
+use super::options::{
+    KernelError, KernelOptions, MAX_REACH, MAX_RING_LENGTH, MIN_RADII, TRIM_LENGTH,
+};
 use super::radial_filter::RadialFilter;
 use super::radial_transform::RadialTransform;
 use super::table::Table;
@@ -45,7 +47,7 @@ impl RankingKernel {
             high: sum_high + 2.0 * options.offset,
         };
         // Written so that NaN is refused with the rest.
-        if !(SMALLEST * options.resolution..).contains(&cone.high) {
+        if !(MIN_RADII * options.resolution..).contains(&cone.high) {
             return Err(KernelError::Length {
                 name: "largest sum of radii and skins",
                 value: cone.high,
@@ -70,7 +72,7 @@ impl RankingKernel {
             Trim::FlatTop => reach,
             Trim::BehandishIlies { length } => reach.max(2.0 * length),
         };
-        if !(0.0..=LONGEST).contains(&(longest / options.resolution))
+        if !(0.0..=MAX_REACH).contains(&(longest / options.resolution))
             || !(0.0..=MAX_RING_LENGTH).contains(&ring)
         {
             return Err(KernelError::TooLong {

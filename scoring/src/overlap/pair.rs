@@ -21,11 +21,11 @@ use std::f64::consts::PI;
 #[derive(Clone, Debug)]
 pub struct PairOverlap {
     bump: Bump,
-    way: Way,
+    method: Method,
 }
 
 #[derive(Clone, Debug)]
-enum Way {
+enum Method {
     Sharp,
     Table(PairTable),
     Quadrature(Quadrature),
@@ -44,16 +44,16 @@ impl PairOverlap {
     /// [`AlphaError`] unless alpha > 0.
     pub fn new(alpha: f64) -> Result<Self, AlphaError> {
         let bump = Bump::new(alpha)?;
-        let way = if alpha.is_infinite() {
-            Way::Sharp
+        let method = if alpha.is_infinite() {
+            Method::Sharp
         } else {
             let quadrature = Quadrature::new(bump);
             match PairTable::new(bump, &quadrature) {
-                Some(table) => Way::Table(table),
-                None => Way::Quadrature(quadrature),
+                Some(table) => Method::Table(table),
+                None => Method::Quadrature(quadrature),
             }
         };
-        Ok(Self { bump, way })
+        Ok(Self { bump, method })
     }
 
     /// The bump.
@@ -64,12 +64,12 @@ impl PairOverlap {
     /// Error of a value as a share of that at d = 0: what the table's fit was measured to miss, else that of the
     /// quadrature.
     pub fn error(&self) -> f64 {
-        match &self.way {
-            Way::Sharp => 1e-15,
-            Way::Table(table) => table.error(),
-            Way::Quadrature(_) if self.bump.alpha() < 1.0 => 1e-5,
-            Way::Quadrature(_) if self.bump.alpha() < 2.0 => 1e-6,
-            Way::Quadrature(_) => 1e-9,
+        match &self.method {
+            Method::Sharp => 1e-15,
+            Method::Table(table) => table.error(),
+            Method::Quadrature(_) if self.bump.alpha() < 1.0 => 1e-5,
+            Method::Quadrature(_) if self.bump.alpha() < 2.0 => 1e-6,
+            Method::Quadrature(_) => 1e-9,
         }
     }
 
@@ -92,14 +92,14 @@ impl PairOverlap {
         square: f64,
         place: &Place,
     ) -> [f64; 2] {
-        match &self.way {
-            Way::Table(table) => {
+        match &self.method {
+            Method::Table(table) => {
                 let [value, slope] = table.value(simd, place);
                 let cube = small * small * small;
                 [cube * value, cube * slope / (small * small + large * large)]
             }
-            Way::Sharp => lens_and_slope(small, large, square),
-            Way::Quadrature(quadrature) => {
+            Method::Sharp => lens_and_slope(small, large, square),
+            Method::Quadrature(quadrature) => {
                 let (cube, unit) = (small * small * small, 1.0 / large);
                 let distance = square.sqrt() * unit;
                 let [value, slope] = quadrature.value_and_slope(place.ratio, distance);

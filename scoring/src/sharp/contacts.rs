@@ -15,7 +15,7 @@ const NOWHERE: f32 = 1e4;
 /// Overlap in Å from which a pair adds its whole stiffness to the curvature.
 const FULL_STIFFNESS: f32 = 0.3;
 /// Keeps the distance of atoms in one place from zero, Å².
-const LEAST: f32 = 1e-6;
+const MIN_SQUARE: f32 = 1e-6;
 
 /// Positions of the receptor atoms of a block relative to the centre of the interface, Å.
 #[derive(Clone, Copy)]
@@ -133,8 +133,9 @@ pub(super) fn atom_sums(
         let dx = each(|lane| at.x - x[lane]);
         let dy = each(|lane| at.y - y[lane]);
         let dz = each(|lane| at.z - z[lane]);
-        let square =
-            each(|lane| dx[lane] * dx[lane] + dy[lane] * dy[lane] + dz[lane] * dz[lane] + LEAST);
+        let square = each(|lane| {
+            dx[lane] * dx[lane] + dy[lane] * dy[lane] + dz[lane] * dz[lane] + MIN_SQUARE
+        });
         let distance = each(|lane| square[lane].sqrt());
         let one = each(|lane| 1.0 / distance[lane]);
         let sum = each(|lane| radii[lane] + atom.radius);

@@ -9,7 +9,7 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 /// Rounds of a descent: stiffness in RT/Å², and most steps. The last has the stiffness of the energy.
 const ROUNDS: [(f64, usize); 3] = [(0.2, 10), (1.2, 10), (STIFFNESS, 25)];
 /// Longest step, Å: the root of the squares of the shift and of the arc at the interface's radius.
-const LONGEST: f64 = 0.8;
+const MAX_STEP: f64 = 0.8;
 /// Damping of a first step in RT/Å²: a part for each contact and a constant, for the curvature of contacts, which has
 /// either sign.
 const DAMPING: [f64; 2] = [0.02, 2.0];
@@ -19,7 +19,7 @@ const RAISED: f64 = 5.0;
 /// A round ends with a step downhill of less than this, in RT and Å.
 const SETTLED: (f64, f64) = (0.01, 0.02);
 /// A round ends with a step uphill that is shorter than this, Å.
-const SHORTEST: f64 = 0.005;
+const MIN_STEP: f64 = 0.005;
 /// Most quasi-Newton steps to the minimum, and halvings of a step.
 const POLISHING: usize = 40;
 const HALVINGS: usize = 6;
@@ -133,7 +133,7 @@ impl SharpFit {
                 }
             } else {
                 damping *= RAISED;
-                if length < SHORTEST {
+                if length < MIN_STEP {
                     break;
                 }
             }
@@ -155,7 +155,7 @@ impl SharpFit {
         let mut gradient = here.by_step.gradient.component_mul(&scale);
         for _ in 0..POLISHING {
             let mut step = -inverse * gradient;
-            step /= (1.0 + (step.norm() / LONGEST).powi(2)).sqrt();
+            step /= (1.0 + (step.norm() / MAX_STEP).powi(2)).sqrt();
             let value = here.energy.total();
             let expected = -gradient.dot(&step);
             if expected.is_nan() || expected < CONVERGED {
@@ -199,14 +199,14 @@ impl SharpFit {
 }
 
 impl Slope {
-    /// A step downhill of at most [`LONGEST`], its rotation as an arc in Å; `None` if a number is not finite.
+    /// A step downhill of at most [`MAX_STEP`], its rotation as an arc in Å; `None` if a number is not finite.
     fn step(&self, scale: &Vector6<f64>, damping: f64) -> Option<Vector6<f64>> {
         let step = -self
             .damped(scale, damping)
             .cholesky()?
             .solve(&self.by_step.gradient.component_mul(scale));
         let length = step.norm();
-        Some(step / (1.0 + (length / LONGEST).powi(2)).sqrt())
+        Some(step / (1.0 + (length / MAX_STEP).powi(2)).sqrt())
     }
 
     /// The curvature with its damping, rotations as arcs in Å.

@@ -5,7 +5,7 @@ use nalgebra::Vector3;
 /// Least edge of a cell, Å.
 const EDGE: f64 = 2.5;
 /// Most cells: where a body is spread out they grow.
-const MOST_CELLS: f64 = 4e6;
+const MAX_CELLS: f64 = 4e6;
 /// Distance from which cells are only known to be far, Å.
 const FAR: f64 = 16.0;
 
@@ -31,7 +31,7 @@ impl DistanceFloors {
         let low = low.add_scalar(-FAR);
         let extent = (high - low).add_scalar(FAR);
         let mut edge = EDGE;
-        while extent.iter().map(|x| x / edge + 1.0).product::<f64>() > MOST_CELLS {
+        while extent.iter().map(|x| x / edge + 1.0).product::<f64>() > MAX_CELLS {
             edge *= 1.5;
         }
         let counts: [usize; 3] = std::array::from_fn(|axis| (extent[axis] / edge) as usize + 1);
@@ -93,7 +93,7 @@ mod tests {
             let mut atoms: Vec<Vector3<f64>> = (0..200).map(|_| point(30.0)).collect();
             atoms.push(Vector3::new(spread, 0.0, 0.0));
             let near = DistanceFloors::new(atoms.iter().copied());
-            assert!(near.bounds.len() as f64 <= MOST_CELLS);
+            assert!(near.bounds.len() as f64 <= MAX_CELLS);
             let (mut far, mut excluded) = (0, 0);
             for _ in 0..2000 {
                 let place = point(90.0);

@@ -47,15 +47,13 @@ pub struct DistanceRestraints {
     pub needed: usize,
 }
 
-/// No restraints.
-static NONE: DistanceRestraints = DistanceRestraints {
-    list: Vec::new(),
-    needed: 0,
-};
-
 impl DistanceRestraints {
     /// No restraints.
     pub fn none() -> &'static Self {
+        static NONE: DistanceRestraints = DistanceRestraints {
+            list: Vec::new(),
+            needed: 0,
+        };
         &NONE
     }
 }

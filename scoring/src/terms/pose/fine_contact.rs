@@ -21,7 +21,10 @@ pub(super) const TERM: TermDefinition = TermDefinition {
             .bodies
             .map(|knots| knots.contact_types.iter().flatten().count())
     },
-    applies: |inputs| inputs.has_contact_types(),
+    applies: |inputs| {
+        let [receptor, ligand] = inputs.bodies;
+        !receptor.contact_types.is_empty() && !ligand.contact_types.is_empty()
+    },
     build: |inputs, weight| {
         let potential = inputs.fine_contact_potential.cloned().unwrap_or_default();
         term(inputs.bodies, &potential, weight)

@@ -16,7 +16,7 @@ const SLAB: usize = 8;
 /// three dimensions.
 const ALIASING_SHARE: f64 = 0.33;
 /// Most points of a fine grid.
-const LARGEST_GRID: usize = u32::MAX as usize;
+const MAX_GRID: usize = u32::MAX as usize;
 
 /// A planned pair of transforms between points and `D` = 3 or 4 axes of modes. See the [module](super) for conventions.
 ///
@@ -148,7 +148,7 @@ fn is_addressable(sizes: &[usize]) -> bool {
     let product = sizes
         .iter()
         .try_fold(1usize, |product, &n| product.checked_mul(n));
-    product.is_some_and(|product| product <= LARGEST_GRID)
+    product.is_some_and(|product| product <= MAX_GRID)
 }
 
 /// Chooses the cheapest grid and window that reach the tolerance.

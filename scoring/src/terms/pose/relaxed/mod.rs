@@ -138,7 +138,7 @@ impl Relaxation {
         let widest = self.atoms.widest(&start, &middle);
         let before = self.collected_energy(workspace, &none);
         let (mut at, mut collected) = (none, none);
-        for longest in LONGEST {
+        for longest in MAX_STEPS {
             at = self.slope(workspace, &at).step(&at, radius, longest);
             self.atoms
                 .renew(&mut collected, &at, widest, &start, workspace);
@@ -308,7 +308,7 @@ fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f6
 /// Longest steps in Å, one after the other; their sum bounds the whole move.
 ///
 /// The length of a step is the root of the squares of the shift and of the arc at the interface's radius.
-pub(super) const LONGEST: [f64; 6] = [0.7, 0.455, 0.296, 0.192, 0.125, 0.081];
+pub(super) const MAX_STEPS: [f64; 6] = [0.7, 0.455, 0.296, 0.192, 0.125, 0.081];
 /// Damping of a step in RT/Å²: a part for each contact and a constant. It stands for the curvature of the atom pair
 /// potential, which has either sign.
 const DAMPING: [f64; 2] = [0.05, 2.0];

@@ -167,7 +167,7 @@ fn poses_come_to_rest_nearby_and_lower() {
         // No atom of this small a ligand is so far out that the arc bound lets it go twice as far.
         for &y in &ligand.centers {
             let moved = Vector3::from(relaxed.pose.apply(y)) - Vector3::from(pose.apply(y));
-            assert!(moved.norm() < 3.0 * LONGEST.iter().sum::<f64>());
+            assert!(moved.norm() < 3.0 * MAX_STEPS.iter().sum::<f64>());
         }
     }
     assert!(gained > 30, "{gained}");
@@ -227,7 +227,7 @@ fn an_overlap_gives_way() {
     assert_eq!(pair.energy(&pose(3.5)), 0.0);
     for start in [1.0, 2.5, 3.2, 3.6] {
         let mut d: f64 = start;
-        for longest in LONGEST {
+        for longest in MAX_STEPS {
             let lack = (1.0 - d * d / 12.25).max(0.0);
             let part = (1.75 * lack / 0.5).min(1.0);
             let weight = (1.0 - d * d / (6.5 * 6.5)).powi(2);
