@@ -233,7 +233,9 @@ impl Blocks {
     ) {
         let blocks = self;
         with_simd!(
-            <'a, F: FnMut(&NearPoints)>(blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, near: &'a mut NearPoints, visit: F) -> (),
+            <'a, F: FnMut(&NearPoints)>(
+                blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, near: &'a mut NearPoints, visit: F
+            ) -> (),
             |simd| blocks.near(simd, x, reach, near, visit)
         );
     }

@@ -40,7 +40,7 @@ pub struct GpuEngine {
 
 /// One rotation of the ligand, and which of its images are wanted: turns of the grid that follow it.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn {
+pub struct LigandRotation {
     /// The rotation.
     pub rotation: UnitQuaternion<f64>,
     /// In the order of [`GridTurn::ALL`]; of [`CpuEngine::turns`] alone.
@@ -124,7 +124,7 @@ impl GpuEngine {
     /// [`GpuError::Driver`] where the driver fails.
     pub fn best(
         &self,
-        turns: &[Turn],
+        turns: &[LigandRotation],
         done: &mut dyn FnMut(usize),
     ) -> Result<Vec<GridPeak>, GpuError> {
         let all: Vec<Image> = turns
@@ -200,7 +200,7 @@ impl GpuEngine {
     ) -> Result<Vec<f32>, GpuError> {
         let image = turn.index();
         let wanted = GridTurn::ALL.map(|one| one == turn);
-        let turn = Turn {
+        let turn = LigandRotation {
             rotation: *rotation,
             wanted,
         };
@@ -225,7 +225,7 @@ impl GpuEngine {
         rotation: &UnitQuaternion<f64>,
     ) -> Result<Vec<(&'static str, f64)>, GpuError> {
         const REPEATS: usize = 5;
-        let turn = Turn {
+        let turn = LigandRotation {
             rotation: *rotation,
             wanted: [true; GridTurn::ALL.len()],
         };
@@ -282,7 +282,12 @@ impl GpuEngine {
     }
 
     /// The commands of the first `stages` stages of a batch, whose turns and images are written to the card.
-    fn encode(&self, turns: &[Turn], images: &[Image], stages: usize) -> wgpu::CommandEncoder {
+    fn encode(
+        &self,
+        turns: &[LigandRotation],
+        images: &[Image],
+        stages: usize,
+    ) -> wgpu::CommandEncoder {
         let mut rows: Vec<[f32; 4]> = Vec::with_capacity(3 * self.batch.turns);
         let mut table: Vec<[u32; 2]> = Vec::with_capacity(images.len());
         for group in images.chunk_by(|a, b| a.turn == b.turn) {

@@ -45,7 +45,9 @@ impl Bodies {
     pub fn sum(&self, pose: &Pose, reach: f64, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
         let bodies = self;
         with_simd!(
-            <'a, F: Fn(usize, usize, f64) -> f64>(bodies: &'a Bodies, pose: &'a Pose, reach: f64, value: F) -> f64,
+            <'a, F: Fn(usize, usize, f64) -> f64>(
+                bodies: &'a Bodies, pose: &'a Pose, reach: f64, value: F
+            ) -> f64,
             |simd| bodies.sum_with(simd, pose, reach, value)
         )
     }
@@ -58,16 +60,14 @@ impl Bodies {
         reach: f64,
         value: impl Fn(usize, usize, f64) -> f64,
     ) -> f64 {
-        let bodies = self;
         let matrix = pose.rotation.to_rotation_matrix();
-        let place =
-            pose.rotation * bodies.ligand_center + pose.translation - bodies.receptor_center;
+        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
         let mut near = NearPoints::default();
         let mut total = 0.0;
-        for &(atom, kind) in &bodies.ligand {
+        for &(atom, kind) in &self.ligand {
             let mut sum = 0.0;
             let position = (matrix * atom + place).into();
-            bodies.receptor.near(
+            self.receptor.near(
                 simd,
                 &position,
                 reach,
@@ -75,7 +75,7 @@ impl Bodies {
                 #[inline(always)]
                 |near| {
                     for (square, point) in near.pairs() {
-                        let Some(&other) = bodies.types.get(point as usize) else {
+                        let Some(&other) = self.types.get(point as usize) else {
                             debug_assert!(false, "an atom that is not there is near");
                             continue;
                         };
