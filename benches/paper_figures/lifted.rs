@@ -1,7 +1,9 @@
 //! The paper's own way from balls to a spectrum: a Fourier series along the radius, so that the sum over balls is a
 //! four-dimensional transform of the points (x, y, z, r).
 
-use knotdock::geometry::gap::expansion::{Candidate, Checked, Expansion, Task, over_squares};
+use knotdock::geometry::gap::expansion::{
+    Candidate, Expansion, SampledSpectrum, Task, over_squares,
+};
 use knotdock::geometry::gap::spectrum::FrequencyBox;
 use knotdock::geometry::gap::ways::Points;
 use knotdock_scoring::kernel::smooth_step_down;
@@ -24,7 +26,7 @@ pub fn series(task: &Task) -> (Expansion, f64) {
     let [low, high] = task.body.radius_range();
     let range = (high - low).max(1e-3 * high);
     let mut best: Option<(usize, f64)> = None;
-    let checked = Checked::new(task);
+    let checked = SampledSpectrum::new(task);
     for gap in GAPS {
         let period = (1.0 + gap) * range;
         // Zero first, then by pairs, so that the fewest are a first part of all.

@@ -249,7 +249,7 @@ impl Blocks {
         );
     }
 
-    /// Whether the box of a block lies within `reach` of `x`; if none does, no point does.
+    /// Whether the box of a block is within `reach` of `x`; if none does, no point does.
     pub fn may_be_within(&self, x: &[f64; 3], reach: f64) -> bool {
         let mut within = false;
         self.list_blocks(

@@ -9,7 +9,7 @@
 //! # Conventions
 //!
 //! A pose takes a ligand knot at y to R y + t in the receptor's frame. Lengths are in Å, a higher score is better. The
-//! grid is (nx, ny, nz) row-major; a voxel stands for one translation.
+//! grid is (nx, ny, nz) row-major; a voxel is one translation.
 
 use crate::engine::{
     ChosenRank, CpuEngine, EngineOptions, Plan, PlanError, ReceptorSpectra, Workspace, choose_rank,
@@ -300,12 +300,12 @@ impl Correlation<'_> {
     }
 }
 
-/// Whether the grid's spacing is above half of the resolution, which no tolerance mends.
+/// Whether the grid's spacing is above half of the resolution, which no tolerance fixes.
 fn is_coarse(plan: &Plan) -> bool {
     plan.spacing() > 0.5 * plan.options().kernel.resolution * (1.0 + 1e-9)
 }
 
-/// What to change if the fast path misses its tolerance by `error`.
+/// Remedy if the fast path misses its tolerance by `error`.
 fn remedy(options: EngineOptions, is_coarse: bool, error: f64) -> String {
     if is_coarse {
         let half = 0.5 * options.kernel.resolution;

@@ -50,7 +50,7 @@ pub enum KernelError {
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What it must satisfy.
+        /// Its range.
         bound: &'static str,
     },
     /// The kernel is so long against its resolution, or rings so long, that its tables would take more than seconds, up
@@ -75,7 +75,7 @@ pub(super) const MAX_RING_LENGTH: f64 = 102.0;
 /// Smallest balls of a kernel, in resolutions: they overlap by the cube of this, and below it lengths run into denormal
 /// numbers.
 pub(super) const MIN_RADII: f64 = 1e-6;
-/// What errors call `Trim::BehandishIlies::length`.
+/// Name of `Trim::BehandishIlies::length` in errors.
 pub(super) const TRIM_LENGTH: &str = "length of the trim";
 /// Largest |lambda|: its square times weights and volumes must stay within single precision.
 const MAX_LAMBDA: f64 = 1e6;

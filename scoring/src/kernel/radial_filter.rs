@@ -6,7 +6,7 @@
 //! modes and the kernels of further effects alike, and all of them end at one reach and one frequency.
 //!
 //! Both integrals are trapezoidal sums of smooth even functions that vanish with all derivatives at their ends, for
-//! which that rule converges faster than any power. What the sums leave out is part of the definition: every engine and
+//! which that rule converges faster than any power. The remainder of the sums is part of the definition: every engine and
 //! the exact sum use them.
 
 use super::radial_transform::sinc;

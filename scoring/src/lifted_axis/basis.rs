@@ -114,7 +114,7 @@ impl RadiusBasis {
     }
 
     /// As [`Self::coupling`] for a product kernel: the product of the two bodies' transforms at the radii of the
-    /// functions. Of `layers` if grown balls have weights of their own, else of the double skins. `None` for
+    /// functions. Of `layers` if grown balls have separate weights, else of the double skins. `None` for
     /// [`Self::Modes`], whose functions have no radius, and if it is zero.
     pub fn product_coupling(
         &self,

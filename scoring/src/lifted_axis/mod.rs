@@ -65,9 +65,9 @@ impl LiftedAxis {
         Self { period, profiles }
     }
 
-    /// The fewest modes whose series reproduces, at all radius sums in use, the kernel to `tolerance` and the score to ten
-    /// times that, relative to the largest transform values; with the error reached, which is above the tolerance if too
-    /// many modes would be needed.
+    /// The fewest modes whose series reproduces the kernel to `tolerance` and the score to ten times that, relative to the
+    /// largest transform values at all radius sums in use. It comes with the error reached, which is above the tolerance
+    /// if too many modes would be needed.
     ///
     /// The score is checked by itself because its slices may cancel. For lambda = 1 and small r0 it is a second difference
     /// along the axis, r0^2 of the kernel, to which high modes add more.

@@ -94,7 +94,7 @@ impl SharpFit {
         at
     }
 
-    /// The optimum that a move of a pose lies near.
+    /// The optimum near a move of a pose.
     fn optimum(&self, pose: &Pose, near: &Move, list: &mut PairList) -> Optimum {
         let at = self.converged(near, list);
         let moved = self.moved(pose, &at, list);
@@ -141,7 +141,7 @@ impl SharpFit {
         at
     }
 
-    /// The minimum that a move lies near: quasi-Newton steps (Broyden, Fletcher, Goldfarb and Shanno; Nocedal & Wright,
+    /// The minimum near a move: quasi-Newton steps (Broyden, Fletcher, Goldfarb and Shanno; Nocedal & Wright,
     /// Numerical Optimization, 2nd ed., eq. 6.17), each halved until it goes downhill.
     fn converged(&self, from: &Move, list: &mut PairList) -> Move {
         let mut at = *from;

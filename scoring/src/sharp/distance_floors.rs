@@ -83,8 +83,8 @@ mod tests {
     use super::*;
     use crate::test_support::Numbers;
 
-    /// What is excluded is farther than the reach, and most of what is far is excluded. Parts of a body may lie far
-    /// from each other.
+    /// Excluded places are farther than the reach, and most far places are excluded. Parts of a body may be far from each
+    /// other.
     #[test]
     fn only_what_is_far_is_excluded() {
         for spread in [1.0, 1e5] {

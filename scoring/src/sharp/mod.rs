@@ -112,7 +112,7 @@ impl SharpFit {
         }
     }
 
-    /// The energy of a pose as it stands: the plain double sum over pairs of atoms in f64.
+    /// The energy of a pose: the plain double sum over pairs of atoms in f64.
     pub fn energy(&self, pose: &Pose) -> Energy {
         let (matrix, place) = self.placed(pose);
         let mut energy = Energy::default();

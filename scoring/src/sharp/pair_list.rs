@@ -195,11 +195,11 @@ impl PairList {
         let mut slope = Slope::default();
         let mut from = 0;
         for atom in &self.mobile {
-            let listed = &self.blocks[from..atom.end];
+            let numbers = &self.blocks[from..atom.end];
             from = atom.end;
             let arm = turn * atom.arm;
             let sums = atom_sums(
-                (listed, &self.positions, &fit.contacts),
+                (numbers, &self.positions, &fit.contacts),
                 atom.atom,
                 &(arm + shift),
                 stiffness,

@@ -105,7 +105,7 @@ impl Symmetry {
         UnitQuaternion::from_axis_angle(axis, self.angle())
     }
 
-    /// The ring's pose about the same axis that lies nearest: without the slide along it. `pose` turns by the ring's
+    /// The nearest pose of a ring about the same axis: without the slide along it. `pose` turns by the ring's
     /// angle, rounding aside.
     pub fn nearest(self, pose: &Pose) -> Pose {
         let axis = direction(pose);
@@ -122,7 +122,7 @@ impl Symmetry {
         let t = pose.translation;
         let turn = pose.rotation.angle_to(&self.rotation(&axis));
         let slide = axis.dot(&t).abs();
-        // What does not turn at all has no axis, and angles to it are no numbers.
+        // A pose without rotation has no axis, and angles to it are no numbers.
         let fits = turn <= OFF && slide <= OFF * (1.0 + t.norm());
         fits.then(|| self.images(pose).collect())
     }
@@ -257,8 +257,7 @@ mod tests {
         }
     }
 
-    /// Where the file's origin lies on the axis nothing moves it, and where it lies far off it moves far: either is a
-    /// ring, as printed too.
+    /// A file's origin on the axis does not move, and one far off it moves far: either is a ring, as printed too.
     #[test]
     fn rings_are_known_wherever_the_origin_lies() {
         for copies in [2, 3, 7, MAX_COPIES] {

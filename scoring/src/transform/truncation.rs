@@ -56,9 +56,7 @@ impl Selection {
 
     /// At most `most` modes, from frequency zero outward; ties go by place in the set.
     pub fn low_frequency(modes: &ModeSet, most: usize) -> Self {
-        let mut groups = groups(modes);
-        groups.sort_by(|a, b| a.square.total_cmp(&b.square));
-        Self::first(modes, &groups, most)
+        Self::first(modes, &by_frequency(modes), most)
     }
 
     /// At most `most` modes by falling magnitude, groups by their mean square; ties go by place in the set.
@@ -142,8 +140,7 @@ pub fn total(modes: &ModeSet) -> usize {
 /// also cost less. Its shells are whole, so it may hold fewer than [`Selection::low_frequency`] keeps; it always holds
 /// frequency zero.
 pub fn ball(modes: &ModeSet, most: usize) -> ModeSet {
-    let mut groups = groups(modes);
-    groups.sort_by(|a, b| a.square.total_cmp(&b.square));
+    let groups = by_frequency(modes);
     let mut held = 0;
     let Some(beyond) = groups.iter().position(|group| {
         held += group.modes;
@@ -164,6 +161,13 @@ pub fn ball(modes: &ModeSet, most: usize) -> ModeSet {
         .find(|&square| square > last * (1.0 + 1e-9))
         .unwrap_or(stop);
     ModeSet::new(modes.size, modes.lengths, 0.5 * (last.sqrt() + next.sqrt()))
+}
+
+/// All groups of a set from frequency zero outward; ties go by place.
+fn by_frequency(modes: &ModeSet) -> Vec<Group> {
+    let mut groups = groups(modes);
+    groups.sort_by(|a, b| a.square.total_cmp(&b.square));
+    groups
 }
 
 /// All groups of a set, by rising place.

@@ -58,7 +58,7 @@ impl TruncatedCorrelation {
         let layout = Layout::new(plan.modes(), selection);
         let components = components::of(plan, spectra, ligand.len());
         let volume = plan.modes().volume();
-        // The receptor lies in the middle of its block, not at the origin: that phase is taken out once.
+        // The receptor is in the middle of its block, not at the origin: that phase is taken out once.
         let turns = components::centering(plan, spectra);
         let values = components
             .iter()

@@ -8,7 +8,7 @@
 //!   penetration depth, the length of the shortest translation that parts them.
 //! - Two solids closer than the **margin** collide.
 //!
-//! # What certifies a verdict
+//! # Certificates
 //!
 //! Inner balls lie inside the solids and outer balls hold them ([`knotdock_structures::ball_solid`]). So
 //!

@@ -1,7 +1,7 @@
 //! The volume that two solids share at a pose, between that of their inner and that of their outer balls.
 //!
 //! A point of both solids is in a ball of either, and these two meet. So only balls that meet one of the other body's
-//! count. What their unions share is exact but for rounding ([`ball_union::shared_volume`]).
+//! count. The volume that their unions share is exact but for rounding ([`ball_union::shared_volume`]).
 //!
 //! That cannot stop halfway. Under a deadline the volume is bounded by balls alone: from below by the largest lens of two
 //! inner balls, from above by the balls of either solid that meet one of the other.

@@ -96,7 +96,7 @@ impl Expansion {
                 })
                 .collect()
         };
-        let checked = Checked::new(task);
+        let checked = SampledSpectrum::new(task);
         let mut candidate = Candidate {
             radial,
             checked: checked.each(|w| at(w, rank)),
@@ -137,14 +137,14 @@ pub fn over_squares(task: &Task, at: impl Fn(f64) -> Vec<Complex64>) -> Vec<Comp
 }
 
 /// The body's spectrum at some frequencies, and the phases of all balls there.
-pub struct Checked {
+pub struct SampledSpectrum {
     lengths: Vec<f64>,
     exact: Vec<Complex64>,
     phases: Vec<Vec<Complex64>>,
     tolerance: f64,
 }
 
-impl Checked {
+impl SampledSpectrum {
     /// The spectrum at frequencies spread over the box.
     pub fn new(task: &Task) -> Self {
         let places = task.frequencies.sample(CHECKED);
@@ -184,7 +184,7 @@ impl Checked {
 impl Candidate {
     /// The fewest functions that keep the tolerance at every frequency checked, one more than a multiple of `step`;
     /// `None` where all are too few.
-    pub fn needed(&self, checked: &Checked, step: usize) -> Option<usize> {
+    pub fn needed(&self, checked: &SampledSpectrum, step: usize) -> Option<usize> {
         let mut left = checked.exact.clone();
         for (f, radial) in self.radial.iter().enumerate() {
             for (index, left) in left.iter_mut().enumerate() {

@@ -37,7 +37,7 @@ use grid::{Buffers, Grid};
 use spectrum::{Body, FrequencyBox, Kernel};
 use ways::Points;
 
-/// Points at which all ways are held against the pairs.
+/// Points at which all ways are compared with the pairs.
 const CHECKED: usize = 24;
 /// Pairs of balls that are summed for the reference at most.
 const MAX_PAIRS: usize = 4_000_000;
@@ -307,7 +307,7 @@ impl Scene {
             .collect()
     }
 
-    /// How far a blocked point lies from those whose value exceeds `level`, at most; `None` where none does.
+    /// Largest distance of a blocked point from those whose value exceeds `level`; `None` if none does.
     fn hausdorff(&self, blocked: &[bool], values: &[f64], level: f64) -> Option<f64> {
         let point = |index: usize| Ball {
             center: self.translation(index),

@@ -166,8 +166,8 @@ fn around((low, high): ([f64; 3], [f64; 3])) -> Ball {
     }
 }
 
-/// A bound of how far a point of the outer union lies from the inner one; infinite if only the latter is empty, zero
-/// if both are.
+/// Upper bound of the distance of a point of the outer union from the inner one; infinite if only the latter is empty,
+/// zero if both are.
 ///
 /// Every point of the outer union has a node within eps, at which the outer distance is eps at most. So eps more than
 /// the largest inner distance of such nodes is the bound.

@@ -83,7 +83,7 @@ fn is_free(tree: &BallTree, a: [f64; 3], b: [f64; 3], length: f64, halvings: u32
     distance > 0.0 && (halvings == 0 || is_free(a, middle) && is_free(middle, b))
 }
 
-/// Sets of numbers that are joined two by two; the least number of a set stands for it.
+/// Sets of numbers that are joined two by two, each represented by its least number.
 struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {

@@ -303,8 +303,7 @@ fn spectra<T: Real>(engine: &Transforms<T>, units: &[f64]) -> Vec<[f32; 2]> {
     spectra
 }
 
-/// What one whole number of the spread block stands for in each field: all knots of a field on one point would reach
-/// 2^30.
+/// Value of 1 in the spread block of whole numbers, by field: all knots of a field on one point would reach 2^30.
 fn units<T: Real>(engine: &Transforms<T>) -> Vec<f64> {
     let fields = engine.rank();
     let mut sums = vec![0.0; fields];

@@ -168,7 +168,7 @@ impl GpuEngine {
         let mut peaks = Vec::with_capacity(records.len());
         for (records, image) in records.chunks_exact(self.sizes.peaks).zip(&all) {
             let before = peaks.len();
-            // A grid may hold fewer voxels than requested: 0 stands for none, else voxel + 1.
+            // A grid may hold fewer voxels than requested: 0 is none, else voxel + 1.
             let found = records.iter().filter_map(|&[place, bits]| {
                 place.checked_sub(1).map(|voxel| GridPeak {
                     turn: image.turn,
@@ -241,7 +241,7 @@ impl GpuEngine {
         for stage in 0..self.stages.len() {
             let mut least = f64::INFINITY;
             for _ in 0..REPEATS {
-                // What it works on is there.
+                // The stages before give it its data.
                 let before = self.encode(&turns, &images, stage);
                 self.gpu.wait(self.gpu.queue.submit([before.finish()]))?;
                 let mut encoder = self
@@ -324,7 +324,7 @@ impl GpuEngine {
         })
     }
 
-    /// What a buffer holds once everything submitted is done.
+    /// Contents of a buffer once everything submitted is done.
     fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
         let (sender, mapped) = std::sync::mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {

@@ -123,7 +123,7 @@ impl Recipe<'_> {
                 module: &module,
                 entry_point: Some("main"),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    // Every invocation fills what it reads of a workgroup's memory.
+                    // Every invocation fills the part of a workgroup's memory that it reads.
                     zero_initialize_workgroup_memory: false,
                     ..Default::default()
                 },

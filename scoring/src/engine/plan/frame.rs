@@ -1,6 +1,6 @@
 //! The frame of the grid: how the receptor is turned in the box.
 //!
-//! The box holds the receptor's bounding box, and the ligand on all sides of it. A receptor that lies askew has a large
+//! The box holds the receptor's bounding box, and the ligand on all sides of it. A receptor that is askew has a large
 //! one. Turned well it needs fewer points, and where its box is as long in y as in z, quarter turns about x share the
 //! ligand's transform among eight rotations instead of four ([`crate::grid_turn`]).
 

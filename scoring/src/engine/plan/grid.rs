@@ -99,10 +99,7 @@ impl Extents {
     }
 }
 
-/// The modes of such a grid, and the points per axis of the nufft transforms' fine one, `ratio` times as fine.
-///
-/// # Errors
-/// As [`Extents::grid`].
+/// The modes of such a grid, and the points per axis of the transforms' fine one, `ratio` times as fine.
 pub(super) fn modes_at(
     spacing: f64,
     extents: &Extents,
@@ -143,7 +140,7 @@ pub(super) fn window_width(tolerance: f64, dynamic_range: f64, oversampling: f64
 pub(super) struct Widest {
     sum: f64,
     table: Table<4>,
-    /// What that pair earns at most; not 0.
+    /// Largest score of that pair; not 0.
     peak_score: f64,
 }
 

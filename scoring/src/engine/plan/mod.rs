@@ -191,7 +191,7 @@ impl Plan {
         self.extents.ligand_radius
     }
 
-    /// Whether a ligand lies within the room that the plan gives it.
+    /// Whether a ligand is within the room of the plan.
     pub(crate) fn holds_ligand(&self, ligand: &Knots) -> bool {
         let distance = |x: &[f64; 3]| (Vector3::from(*x) - self.ligand_center()).norm();
         let room = self.ligand_radius() * (1.0 + 1e-9) + 1e-9 * self.spacing;
@@ -238,7 +238,7 @@ impl Plan {
     /// Plans the correlation of two sets of knots by the product kernel (`options.kernel.trim` has no meaning there).
     ///
     /// Under [`Band::LowPass`] the modes below the stop frequency are all there is. Under [`Band::Whole`] the grid cuts
-    /// the kernel sharply at 1 / (2 spacing), by default where less than the tolerance lies beyond.
+    /// the kernel sharply at 1 / (2 spacing), by default where less than the tolerance is beyond.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -401,7 +401,7 @@ impl Plan {
     }
 
     /// Functions of shape on the receptor's and on the ligand's side: those of the radius, for each layer where grown
-    /// balls have weights of their own.
+    /// balls have separate weights.
     pub fn shape_functions(&self) -> (usize, usize) {
         let layers = if self.layered { LAYERS.len() } else { 1 };
         let size = |side| layers * self.basis.size(&self.axis, side);
@@ -441,9 +441,9 @@ impl Plan {
 
     /// Indices of the knots that the planned correlation cannot resolve.
     ///
-    /// Less than a tenth of the overlap of two such coincident balls is left after the low-pass (nine tenths or more for
-    /// radii of 1.5 to 1.9 Å at a resolution of 4.5 Å); it falls like (radius / resolution)^3. The exact sum has the same
-    /// low-pass, so no error shows it. Without a low-pass their radius is below the grid spacing.
+    /// The low-pass leaves less than a tenth of the overlap of two such coincident balls, which falls like (radius /
+    /// resolution)^3. (It leaves nine tenths for radii of 1.5 to 1.9 Å at a resolution of 4.5 Å.) The exact sum has the
+    /// same low-pass, so no error shows it. Without a low-pass their radius is below the grid spacing.
     pub fn unresolved(&self, knots: &Knots) -> Vec<usize> {
         let is_lost = |radius: f64| match &self.pair {
             PairKernel::Product(kernel) if kernel.band() == Band::Whole => radius < self.spacing,

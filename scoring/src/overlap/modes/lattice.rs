@@ -15,7 +15,7 @@ pub(super) struct Entry {
     pub k: usize,
     /// |k|^2.
     pub shell: usize,
-    /// How often +kx and -kx count: 2 for a mode that stands for its conjugate too, 0 for one that is not there.
+    /// Counts of +kx and -kx: 2 for a mode and its conjugate, 0 for one that is not there.
     pub counts: [f64; 2],
 }
 

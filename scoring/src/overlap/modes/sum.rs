@@ -28,7 +28,7 @@ impl ModesWorkspace {
     }
 }
 
-/// Overlap energy from some modes, with its bounds: the energy of all modes lies within `tail + rounding` of `energy`.
+/// Overlap energy from some modes, with its bounds: the energy of all modes is within `tail + rounding` of `energy`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ModesOverlap {
     /// The sum over the modes so far.

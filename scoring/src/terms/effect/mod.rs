@@ -133,7 +133,7 @@ impl EffectInputs<'_> {
 pub struct Label {
     /// Class, an index into the matrix.
     pub class: usize,
-    /// Value: a charge in e, or 1; 0 for a knot that does not count.
+    /// Value: a charge in e, or 1; 0 if the knot does not count.
     pub value: f64,
 }
 

@@ -96,8 +96,7 @@ impl Default for DistanceBinnedPotential {
 }
 
 impl DistanceBinnedPotential {
-    /// Reads a table: lines of `#`, a header `range,type,` with the names of the types, then for each range a row for
-    /// each type.
+    /// Reads a table: lines of `#`, a header `range,type,` with the names of the types, then one row per range and type.
     ///
     /// # Errors
     /// [`Error`] with the line that has another form, or if the energies of a range are not finite and

@@ -15,7 +15,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// Folds and sorts points (in units of the period) for transforms by this plan.
     ///
     /// # Errors
-    ///
     /// [`TransformError`] when a coordinate is not finite or there are more than 2^32 - 1 points.
     pub fn locate(&self, points: &[[f64; D]]) -> Result<SortedPoints<D>, TransformError> {
         let mut sorted = SortedPoints::new(self.grid);
@@ -26,7 +25,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// As [`Self::locate`], into memory that is there: nothing is allocated for no more points than were there before.
     ///
     /// # Errors
-    ///
     /// As [`Self::locate`]; after one, `sorted` must not be used until points have been set.
     pub fn locate_into(
         &self,
@@ -40,7 +38,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// Type 1, points to modes: `output[k] = sum_j weights[j] exp(-2 pi i k.x_j)`.
     ///
     /// # Errors
-    ///
     /// [`TransformError`] when an array has another length than points or modes, or belongs to another plan.
     pub fn forward(
         &self,
@@ -57,7 +54,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// Type 2, modes to values at the points: `values[j] = sum_k modes[k] exp(+2 pi i k.x_j)`.
     ///
     /// # Errors
-    ///
     /// As [`Self::forward`].
     pub fn adjoint(
         &self,

@@ -1,7 +1,7 @@
 //! Pose term `relaxed`: energy of atom pairs with a penalty on overlap, after a small rigid move that lowers it.
 //!
 //! Unbound surfaces overlap at some places of a grid pose and leave gaps at others, in native poses too. So an energy
-//! that penalises overlap says little about a pose as it stands. It says more about one half an Ångström beside it.
+//! that penalises overlap says little about the pose itself. It says more about one half an Ångström beside it.
 //! [`Relaxation`] finds that pose by a few damped Gauss-Newton steps. Rigid-body minimisation does the same before
 //! force fields rank poses (Li, Chen & Weng, Proteins 53 (2003) 693-707).
 //!
@@ -309,7 +309,7 @@ fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f6
 ///
 /// The length of a step is the root of the squares of the shift and of the arc at the interface's radius.
 pub(super) const MAX_STEPS: [f64; 6] = [0.7, 0.455, 0.296, 0.192, 0.125, 0.081];
-/// Damping of a step in RT/Å²: a part for each contact and a constant. It stands for the curvature of the atom pair
+/// Damping of a step in RT/Å²: a part for each contact and a constant. It replaces the curvature of the atom pair
 /// potential, which has either sign.
 const DAMPING: [f64; 2] = [0.05, 2.0];
 
