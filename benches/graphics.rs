@@ -9,7 +9,7 @@
 mod example;
 
 use knotdock_scoring::Precision;
-use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, Turn};
+use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, LigandRotation};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::PeakLimits;
@@ -45,10 +45,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         Quantity::Score,
         Precision::Single,
     );
-    let turns: Vec<Turn> = rotation_set(images * TURNS)
+    let turns: Vec<LigandRotation> = rotation_set(images * TURNS)
         .into_iter()
         .step_by(images)
-        .map(|rotation| Turn {
+        .map(|rotation| LigandRotation {
             rotation,
             wanted: std::array::from_fn(|image| image < images),
         })

@@ -4,6 +4,9 @@
 
 #[path = "../benches/paper_figures/crossing.rs"]
 mod crossing;
+#[path = "../benches/paper_figures/lifted.rs"]
+#[allow(dead_code)]
+mod lifted;
 #[path = "../benches/paper_figures/minkowski.rs"]
 mod minkowski;
 #[path = "../benches/paper_figures/scene.rs"]
@@ -210,22 +213,22 @@ fn every_way_gives_the_same_spectrum() {
             frequencies,
             tolerance,
         };
-        let series = Expansion::series(&task);
+        let (series, period) = lifted::series(&task);
         let compressed = Expansion::compressed(&task);
-        assert!(series.len() > compressed.len() && compressed.len() >= last);
-        last = compressed.len();
+        assert!(series.rank() > compressed.rank() && compressed.rank() >= last);
+        last = compressed.rank();
         let points = ways::Points::new(&body, EDGE, frequencies, &series);
         let direct = ways::direct(&points);
-        let mut fast = ways::plan_4d(&points, tolerance).unwrap();
-        let lifted = ways::fast_4d(&points, &mut fast).unwrap();
+        let mut fast = lifted::planned(&points, &body.radii, period, tolerance).unwrap();
+        let by_series = lifted::fast(&points, &mut fast).unwrap();
         let points = ways::Points::new(&body, EDGE, frequencies, &compressed);
         let plain = ways::direct(&points);
-        let mut fast = ways::plan_3d(&points, tolerance).unwrap();
-        let ours = ways::fast_3d(&points, &mut fast).unwrap();
+        let mut fast = ways::planned(&points, tolerance).unwrap();
+        let ours = ways::fast(&points, &mut fast).unwrap();
         // The expansion is checked at some of the frequencies; a fast transform adds its own error.
         for (name, values) in [
             ("ndft", direct),
-            ("4d", lifted),
+            ("4d", by_series),
             ("plain", plain),
             ("3d", ours),
         ] {

@@ -9,7 +9,7 @@ use crate::timing::least;
 use crate::whole::Whole;
 use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::spectrum::{FrequencyBox, Kernel};
-use knotdock::geometry::gap::ways::{Points, fast_3d, plan_3d};
+use knotdock::geometry::gap::ways::{Points, fast, planned};
 use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
 use knotdock_scoring::transform::truncation::Selection;
 use knotdock_scoring::truncated::RotationSpectrum;
@@ -82,9 +82,9 @@ fn turning(scene: &Scene, kernel: &Kernel, power: u32) -> Result<f64, Box<dyn Er
         tolerance: 0.5 * TOLERANCE,
     });
     let points = Points::new(&scene.peg, scene.edge, frequencies, &expansion);
-    let mut fast = plan_3d(&points, 0.5 * TOLERANCE)?;
-    fast_3d(&points, &mut fast)?;
-    Ok(least(|| fast_3d(&points, &mut fast)))
+    let mut plan = planned(&points, 0.5 * TOLERANCE)?;
+    fast(&points, &mut plan)?;
+    Ok(least(|| fast(&points, &mut plan)))
 }
 
 fn row(

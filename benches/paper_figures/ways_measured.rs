@@ -1,14 +1,13 @@
 //! A body's spectrum at its m' lowest frequencies: what each way takes, with no larger an error than the grid's.
 
 use crate::crossing::crossing;
+use crate::lifted;
 use crate::scene::Scene;
 use crate::timing::least;
 use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::grid::Grid;
 use knotdock::geometry::gap::spectrum::{FrequencyBox, Kernel, exact};
-use knotdock::geometry::gap::ways::{
-    Points, direct, direct_share, fast_3d, fast_4d, plan_3d, plan_4d,
-};
+use knotdock::geometry::gap::ways::{Points, direct, fast, planned};
 use num_complex::Complex64;
 use std::error::Error;
 
@@ -125,26 +124,25 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
             scaled: false,
         };
         // What one way holds is freed before the next begins: the 4D transform of the largest box takes a gigabyte.
-        let series = Expansion::series(&task);
+        let (series, period) = lifted::series(&task);
         let points = Points::new(body, scene.edge, frequencies, &series);
-        let (literal, lifted) = {
-            let mut fast = plan_4d(&points, tolerance)?;
-            let values = fast_4d(&points, &mut fast)?;
-            let seconds = least(|| fast_4d(&points, &mut fast));
-            let lifted = checked(seconds, &values);
-            // The direct sums differ from the fast ones by the transform's tolerance alone; where they take too long
-            // a share is timed.
-            (by_direct_sums(&points, &reference, &places), lifted)
+        let lifted = {
+            let mut plan = lifted::planned(&points, &body.radii, period, tolerance)?;
+            let values = lifted::fast(&points, &mut plan)?;
+            checked(least(|| lifted::fast(&points, &mut plan)), &values)
         };
+        // The direct sums differ from the fast ones by the transform's tolerance alone; if they take too long a share
+        // is timed.
+        let literal = by_direct_sums(&points, &reference, &places);
         let compressed = Expansion::compressed(&task);
         let points = Points::new(body, scene.edge, frequencies, &compressed);
-        let mut fast = plan_3d(&points, tolerance)?;
-        let values = fast_3d(&points, &mut fast)?;
-        let ours = checked(least(|| fast_3d(&points, &mut fast)), &values);
+        let mut plan = planned(&points, tolerance)?;
+        let values = fast(&points, &mut plan)?;
+        let ours = checked(least(|| fast(&points, &mut plan)), &values);
         rows.push(Row {
             power,
-            lifted_modes: series.len(),
-            rank: compressed.len(),
+            lifted_modes: series.rank(),
+            rank: compressed.rank(),
             raster_error,
             ways: [
                 literal,
@@ -165,8 +163,8 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
 
 /// The direct sums: all of them, or the time of a share, with no error then.
 fn by_direct_sums(points: &Points, reference: &[Complex64], places: &[usize]) -> Measured {
-    let share = SHARE / points.direct_cost();
-    let planes = points.planes();
+    let share = SHARE / lifted::direct_cost(points);
+    let planes = points.frequencies.half()[0];
     if share >= 1.0 {
         let values = direct(points);
         return Measured {
@@ -176,7 +174,7 @@ fn by_direct_sums(points: &Points, reference: &[Complex64], places: &[usize]) ->
         };
     }
     let timed_planes = ((share * planes as f64) as usize).max(1);
-    let seconds = least(|| direct_share(points, timed_planes));
+    let seconds = least(|| lifted::direct_share(points, timed_planes));
     Measured {
         seconds: seconds * planes as f64 / timed_planes as f64,
         error: f64::NAN,

@@ -7,8 +7,9 @@
 // Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
 #![allow(clippy::needless_range_loop)]
 
+use crate::vectorized::with_simd;
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Blocks in a group.
 const GROUP: usize = 16;
@@ -137,7 +138,7 @@ impl Blocks {
         &self.blocks[block].positions
     }
 
-    /// Where a point is, by its place in the order of the blocks, in Å.
+    /// Position in Å of a point, by its place in the order of the blocks.
     #[inline(always)]
     pub fn position(&self, point: u32) -> [f64; 3] {
         let (index, lane) = (point as usize / LANES, point as usize % LANES);
@@ -188,8 +189,8 @@ impl Blocks {
         simd: S,
         x: &[f64; 3],
         reach: f64,
-        near: &mut Near,
-        mut visit: impl FnMut(&Near),
+        near: &mut NearPoints,
+        mut visit: impl FnMut(&NearPoints),
     ) {
         let square_reach = reach * reach;
         let everywhere = x.map(|x| simd.splat_f64s(x));
@@ -223,27 +224,32 @@ impl Blocks {
 /// The same for callers that are not compiled for wide vector registers themselves: each call finds them.
 impl Blocks {
     /// As [`Self::near`].
-    pub fn list_near(&self, x: &[f64; 3], reach: f64, near: &mut Near, visit: impl FnMut(&Near)) {
-        Arch::new().dispatch(ListNear {
-            blocks: self,
-            x,
-            reach,
-            near,
-            visit,
-        });
+    pub fn list_near(
+        &self,
+        x: &[f64; 3],
+        reach: f64,
+        near: &mut NearPoints,
+        visit: impl FnMut(&NearPoints),
+    ) {
+        let blocks = self;
+        with_simd!(
+            <'a, F: FnMut(&NearPoints)>(
+                blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, near: &'a mut NearPoints, visit: F
+            ) -> (),
+            |simd| blocks.near(simd, x, reach, near, visit)
+        );
     }
 
     /// As [`Self::visit_blocks`].
     pub fn list_blocks(&self, x: &[f64; 3], reach: f64, visit: impl FnMut(u32)) {
-        Arch::new().dispatch(ListBlocks {
-            blocks: self,
-            x,
-            reach,
-            visit,
-        });
+        let blocks = self;
+        with_simd!(
+            <'a, F: FnMut(u32)>(blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, visit: F) -> (),
+            |simd| blocks.visit_blocks(simd, x, reach, visit)
+        );
     }
 
-    /// Whether the box of a block lies within `reach` of `x`; if none does, no point does.
+    /// Whether the box of a block is within `reach` of `x`; if none does, no point does.
     pub fn may_be_within(&self, x: &[f64; 3], reach: f64) -> bool {
         let mut within = false;
         self.list_blocks(
@@ -253,41 +259,6 @@ impl Blocks {
             |_| within = true,
         );
         within
-    }
-}
-
-struct ListNear<'a, F> {
-    blocks: &'a Blocks,
-    x: &'a [f64; 3],
-    reach: f64,
-    near: &'a mut Near,
-    visit: F,
-}
-
-impl<F: FnMut(&Near)> WithSimd for ListNear<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        self.blocks
-            .near(simd, self.x, self.reach, self.near, self.visit);
-    }
-}
-
-struct ListBlocks<'a, F> {
-    blocks: &'a Blocks,
-    x: &'a [f64; 3],
-    reach: f64,
-    visit: F,
-}
-
-impl<F: FnMut(u32)> WithSimd for ListBlocks<'_, F> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) {
-        self.blocks
-            .visit_blocks(simd, self.x, self.reach, self.visit);
     }
 }
 
@@ -351,7 +322,7 @@ const fn front() -> [[u8; LANES]; 1 << LANES] {
 }
 
 /// Points within reach of another.
-pub(crate) struct Near {
+pub(crate) struct NearPoints {
     /// Squared distances in Å^2.
     squares: [f64; CAPACITY],
     /// Places in the order of the blocks.
@@ -359,7 +330,7 @@ pub(crate) struct Near {
     count: usize,
 }
 
-impl Default for Near {
+impl Default for NearPoints {
     fn default() -> Self {
         Self {
             squares: [0.0; CAPACITY],
@@ -369,7 +340,7 @@ impl Default for Near {
     }
 }
 
-impl Near {
+impl NearPoints {
     /// Whether another eight might find no room.
     #[inline(always)]
     pub fn is_full(&self) -> bool {
@@ -476,7 +447,7 @@ mod tests {
                     let reach = 9.0;
                     let x = from.into();
                     let mut found = Vec::new();
-                    blocks.near(Scalar, &x, reach, &mut Near::default(), |near| {
+                    blocks.near(Scalar, &x, reach, &mut NearPoints::default(), |near| {
                         for (square, point) in near.pairs() {
                             let number = numbers[point as usize];
                             let distance = (from - points[number]).norm_squared();
@@ -490,7 +461,7 @@ mod tests {
                         .collect();
                     assert_eq!(found, expected, "{count} points over {spread} Å");
                     let mut listed = Vec::new();
-                    blocks.list_near(&x, reach, &mut Near::default(), |near| {
+                    blocks.list_near(&x, reach, &mut NearPoints::default(), |near| {
                         listed.extend(near.pairs().map(|(_, point)| numbers[point as usize]));
                     });
                     listed.sort_unstable();

@@ -9,7 +9,7 @@
 //! # Conventions
 //!
 //! A pose takes a ligand knot at y to R y + t in the receptor's frame. Lengths are in Å, a higher score is better. The
-//! grid is (nx, ny, nz) row-major; a voxel stands for one translation.
+//! grid is (nx, ny, nz) row-major; a voxel is one translation.
 
 use crate::engine::{
     ChosenRank, CpuEngine, EngineOptions, Plan, PlanError, ReceptorSpectra, Workspace, choose_rank,
@@ -32,9 +32,9 @@ const PROBE_SET: usize = 60;
 /// Largest tolerance of a plan.
 const MAX_TOLERANCE: f64 = 0.1;
 /// Plans that are tried for a tolerance.
-const MOST_PLANS: usize = 3;
+const MAX_PLANS: usize = 3;
 /// Most points of a finer plan's grid, in those of the first.
-const MOST_GROWTH: usize = 32;
+const MAX_GROWTH: usize = 32;
 /// Largest departure of a rotation's norm from 1.
 const NORM_TOLERANCE: f64 = 1e-6;
 
@@ -133,10 +133,10 @@ impl Correlator {
         }
         let mut plan = Plan::with_effects(receptor, ligand, options, tolerance, terms.clone())?;
         let points = |plan: &Plan| plan.size().iter().product::<usize>();
-        let most_points = MOST_GROWTH.saturating_mul(points(&plan));
+        let most_points = MAX_GROWTH.saturating_mul(points(&plan));
         let is_coarse = is_coarse(&plan);
         let mut reachable = f64::INFINITY;
-        for _ in 0..MOST_PLANS {
+        for _ in 0..MAX_PLANS {
             let planned_for = plan.options().tolerance;
             let found = Self::planned([receptor, ligand], plan, precision)?;
             let error = found.error;
@@ -236,9 +236,8 @@ impl Correlator {
         self.rank_error
     }
 
-    /// Largest error against the exact sum that was found at about 750 voxels of three rotations, best and overlapping ones
-    /// among them, relative to the best score there (to the largest magnitude if the kernel rewards nothing). At most the
-    /// tolerance: [`Self::with_terms`] refuses one that it exceeds. An estimate: errors elsewhere may be larger.
+    /// Largest error against the exact sum at about 750 voxels of three rotations, relative to the best score there (to
+    /// the largest magnitude if the kernel rewards nothing). At most the tolerance; errors elsewhere may be larger.
     pub fn error(&self) -> f64 {
         self.error
     }
@@ -301,12 +300,12 @@ impl Correlation<'_> {
     }
 }
 
-/// Whether the grid's spacing is above half of the resolution, which no tolerance mends.
+/// Whether the grid's spacing is above half of the resolution, which no tolerance fixes.
 fn is_coarse(plan: &Plan) -> bool {
     plan.spacing() > 0.5 * plan.options().kernel.resolution * (1.0 + 1e-9)
 }
 
-/// What to change if the fast path misses its tolerance by `error`.
+/// Remedy if the fast path misses its tolerance by `error`.
 fn remedy(options: EngineOptions, is_coarse: bool, error: f64) -> String {
     if is_coarse {
         let half = 0.5 * options.kernel.resolution;
@@ -339,7 +338,7 @@ mod tests {
         Pose::from_parts([0.3, -0.2, 0.8, 0.4], [0.0; 3]).rotation
     }
 
-    /// What the front door gives at a voxel is what the exact sum gives at its pose.
+    /// The score of a voxel is the exact sum at its pose.
     #[test]
     fn peaks_have_the_exact_scores_of_their_poses() {
         let (a, b) = (cloud(80, 14.0, 1), cloud(30, 8.0, 2));

@@ -17,7 +17,7 @@ pub enum ExactSum {
 }
 
 impl ExactSum {
-    /// The exact sum of what a plan correlates.
+    /// The exact sum of a plan's correlation.
     ///
     /// # Errors
     /// [`KnotsError`] on knots that cannot be summed.
@@ -36,10 +36,7 @@ impl ExactSum {
 
     /// The score of one pose and nothing else.
     pub fn score_only(&self, pose: &Pose) -> f64 {
-        match self {
-            Self::Lifted(scorer) => scorer.score_only(pose),
-            Self::Product(scorer) => scorer.score_only(pose),
-        }
+        self.terms(pose).score
     }
 
     /// Score of one pose by term.
@@ -55,7 +52,7 @@ impl ExactSum {
         }
     }
 
-    /// What shape's term is made of at one pose: its slices, and the unfiltered score.
+    /// The parts of shape's term at one pose: its slices, and the unfiltered score.
     pub fn shape(&self, pose: &Pose) -> ShapeParts {
         match self {
             Self::Lifted(scorer) => scorer.shape(pose),

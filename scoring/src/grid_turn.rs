@@ -12,27 +12,19 @@ use std::f64::consts::FRAC_1_SQRT_2;
 pub struct GridTurn {
     /// Whether y goes to z, and z to -y, first.
     quarter: bool,
-    half: Half,
-}
-
-/// A turn by 180 degrees about an axis, or none.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Half {
-    None,
-    X,
-    Y,
-    Z,
+    /// Axis of the turn by 180 degrees that follows: 1 for x, 2 for y, 3 for z; 0 for none.
+    half: usize,
 }
 
 impl GridTurn {
     /// No turn.
-    pub const NONE: Self = Self::half(Half::None);
+    pub const NONE: Self = Self::new(false, 0);
     /// By 180 degrees about x: (x, -y, -z).
-    pub const X: Self = Self::half(Half::X);
+    pub const X: Self = Self::new(false, 1);
     /// By 180 degrees about y: (-x, y, -z).
-    pub const Y: Self = Self::half(Half::Y);
+    pub const Y: Self = Self::new(false, 2);
     /// By 180 degrees about z: (-x, -y, z).
-    pub const Z: Self = Self::half(Half::Z);
+    pub const Z: Self = Self::new(false, 3);
 
     /// None and the half-turns, which map every box onto itself.
     pub const HALF_TURNS: [Self; 4] = [Self::NONE, Self::X, Self::Y, Self::Z];
@@ -44,10 +36,10 @@ impl GridTurn {
         Self::X,
         Self::Y,
         Self::Z,
-        Self::NONE.after_quarter(),
-        Self::X.after_quarter(),
-        Self::Y.after_quarter(),
-        Self::Z.after_quarter(),
+        Self::new(true, 0),
+        Self::new(true, 1),
+        Self::new(true, 2),
+        Self::new(true, 3),
     ];
 
     /// The turns that map a plan's modes onto themselves: the half-turns, or all.
@@ -59,32 +51,22 @@ impl GridTurn {
         }
     }
 
-    const fn half(half: Half) -> Self {
-        Self {
-            quarter: false,
-            half,
-        }
-    }
-
-    const fn after_quarter(self) -> Self {
-        Self {
-            quarter: true,
-            half: self.half,
-        }
+    const fn new(quarter: bool, half: usize) -> Self {
+        Self { quarter, half }
     }
 
     /// Place in [`Self::ALL`].
     pub fn index(self) -> usize {
-        4 * usize::from(self.quarter) + self.half as usize
+        4 * usize::from(self.quarter) + self.half
     }
 
-    /// What each coordinate is multiplied by, after the quarter turn.
+    /// Factor of each coordinate, after the quarter turn.
     fn signs(self) -> [i32; 3] {
         match self.half {
-            Half::None => [1, 1, 1],
-            Half::X => [1, -1, -1],
-            Half::Y => [-1, 1, -1],
-            Half::Z => [-1, -1, 1],
+            0 => [1, 1, 1],
+            1 => [1, -1, -1],
+            2 => [-1, 1, -1],
+            _ => [-1, -1, 1],
         }
     }
 
@@ -117,10 +99,10 @@ impl GridTurn {
             [w, x, y, z]
         };
         match self.half {
-            Half::None => [w, x, y, z],
-            Half::X => [-x, w, -z, y],
-            Half::Y => [-y, z, w, -x],
-            Half::Z => [-z, -y, x, w],
+            0 => [w, x, y, z],
+            1 => [-x, w, -z, y],
+            2 => [-y, z, w, -x],
+            _ => [-z, -y, x, w],
         }
     }
 }

@@ -30,7 +30,7 @@
 //!
 //! | module | content |
 //! |---|---|
-//! | [`kernel`], [`quantity`] | what shape scores: pair kernels, score and slices |
+//! | [`kernel`], [`quantity`] | shape: pair kernels, score and slices |
 //! | [`terms::effect`] | terms of the search: shape, and sums over labelled pairs of knots |
 //! | [`exact`] | the plain pair sum of one pose, which every fast path is tested against |
 //! | [`transform`] | knots to modes and modes to grids |

@@ -2,7 +2,7 @@
 
 use crate::precision::{InPrecision, of_precision};
 use crate::transform::Real;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 
 /// A grid pose: rotation and voxel, with the fast path's score.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -29,7 +29,7 @@ impl Peak {
 /// Voxels next to a peak, on each axis and side, that hold no further peak.
 pub const NEIGHBOURS: usize = 2;
 
-/// What a search for peaks returns at the most.
+/// Limits of a search for peaks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeakLimits {
     /// Number of peaks.
@@ -96,9 +96,8 @@ impl ScoreGrid {
 
     /// Appends the best voxels to `found`, best first.
     ///
-    /// Each lies at least [`NEIGHBOURS`] + 1 voxels from the others along some axis of the periodic grid. Ties go to the
-    /// lower voxel. Fewer are found if the neighbourhoods of those found leave nothing. Scores around peaks are
-    /// overwritten with minus infinity. Scores must not be NaN.
+    /// Each is at least [`NEIGHBOURS`] + 1 voxels from the others along some axis of the periodic grid; ties go to the
+    /// lower voxel. Scores around peaks are overwritten with minus infinity. Scores must not be NaN.
     pub fn find_peaks(&mut self, rotation: u32, limits: PeakLimits, found: &mut Vec<Peak>) {
         self.find_peaks_among(rotation, limits, found, &mut |_, _| false);
     }
@@ -135,10 +134,7 @@ impl<T: Real> Rows<T> {
         for (row, (values, best)) in rows.zip(&mut self.best).enumerate() {
             self.open.fill(true);
             open(row, &mut self.open);
-            vectorized(
-                #[inline(always)]
-                || *best = keep(&self.open, values),
-            );
+            vectorize!(*best = keep(&self.open, values));
         }
     }
 
@@ -149,10 +145,7 @@ impl<T: Real> Rows<T> {
         found: &mut Vec<Peak>,
         check: &mut dyn FnMut(usize, &mut [bool]) -> bool,
     ) {
-        vectorized(
-            #[inline(always)]
-            || self.find_inline(rotation, limits, found, check),
-        );
+        vectorize!(self.find_inline(rotation, limits, found, check));
     }
 
     #[inline(always)]

@@ -16,7 +16,7 @@ use crate::terms::effect::Effect;
 use crate::transform::modes::{ModeSet, place};
 use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
 use crate::transform::{Real, fast_size};
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use knotdock_structures::Knots;
 use nalgebra::{Rotation3, Vector3};
 use num_complex::Complex;
@@ -111,10 +111,7 @@ impl PotentialGrid {
 
     /// Score of a pose and its gradient, per Å and per radian about the ligand's centre.
     pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
-        vectorized(
-            #[inline(always)]
-            || self.gradient_inline(pose),
-        )
+        vectorize!(self.gradient_inline(pose))
     }
 
     #[inline(always)]
@@ -311,7 +308,7 @@ struct Combinations {
 }
 
 /// Knots of one radius and one class have one potential: the functions of the classes are added up beforehand, so that
-/// a knot reads one grid for all of them. Charges, of which there are many values, keep a grid of their own.
+/// a knot reads one grid for all of them. Charges, of which there are many values, keep a separate grid.
 ///
 /// `effects` are those of the functions, and `weight` is that of a function at one of the `count` knots.
 fn combinations(

@@ -1,6 +1,6 @@
-//! What an engine correlates: the score, one slice of it, or their change with the radii.
+//! Quantities of a correlation: the score, one slice of it, or their change with the radii.
 
-/// What an engine correlates: one slice, or the score, which is the weighted sum of all three.
+/// The quantity that an engine correlates: one slice, or the score, the weighted sum of all three.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Quantity {
     /// The weighted sum of the three slices: G.

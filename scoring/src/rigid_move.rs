@@ -18,9 +18,22 @@ pub fn center(knots: &Knots) -> Vector3<f64> {
     Vector3::from([0, 1, 2].map(|axis| low[axis] + 0.5 * (high[axis] - low[axis])))
 }
 
+/// Largest radius in Å of a hydrogen, whose bond holds it inside another atom.
+const HYDROGEN: f64 = 1.15;
+
+/// Index, position relative to `middle` (Å) and radius (Å) of each knot but hydrogens.
+pub(crate) fn heavy_atoms(
+    knots: &Knots,
+    middle: Vector3<f64>,
+) -> impl Iterator<Item = (usize, Vector3<f64>, f64)> {
+    let atoms = knots.centers.iter().zip(&knots.radii).enumerate();
+    let atoms = atoms.filter(|(_, (_, radius))| **radius > HYDROGEN);
+    atoms.map(move |(index, (&x, &radius))| (index, Vector3::from(x) - middle, radius))
+}
+
 /// A rigid move of the ligand relative to the receptor: an atom at `a` from the interface's centre goes to
 /// `turn a + shift`.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Move {
     /// The rotation.
     pub turn: UnitQuaternion<f64>,
@@ -29,14 +42,6 @@ pub(crate) struct Move {
 }
 
 impl Move {
-    /// No move.
-    pub fn none() -> Self {
-        Self {
-            turn: UnitQuaternion::identity(),
-            shift: Vector3::zeros(),
-        }
-    }
-
     /// The move after a further step: a shift (Å), then a rotation vector (radians) about the ligand's own place.
     pub fn then(&self, step: &Vector6<f64>) -> Self {
         let shift: Vector3<f64> = step.fixed_rows::<3>(0).into();
@@ -59,7 +64,7 @@ impl Move {
 }
 
 /// First and second derivatives of an energy (RT) by the shift (per Å) and rotation (per radian) of a further step.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Derivatives {
     /// First derivatives: force, then torque.
     pub gradient: Vector6<f64>,
@@ -68,14 +73,6 @@ pub(crate) struct Derivatives {
 }
 
 impl Derivatives {
-    /// Those of nothing.
-    pub fn zero() -> Self {
-        Self {
-            gradient: Vector6::zeros(),
-            curvature: Matrix6::zeros(),
-        }
-    }
-
     /// Adds a force with its torque.
     #[inline(always)]
     pub fn push(&mut self, force: &Vector3<f64>, torque: &Vector3<f64>) {

@@ -25,8 +25,8 @@ impl Pose {
 
     /// A pose from quaternion (w, x, y, z), normalised here, and translation in Å.
     ///
-    /// A quaternion that is normalised but for rounding stays as it is: normalised again its last digits could change,
-    /// and a pose that is read from a file must be the one that was written.
+    /// A quaternion that is normalised but for rounding is not changed, so that a pose that is read from a file is the one
+    /// that was written.
     pub fn from_parts(quaternion: [f64; 4], translation: [f64; 3]) -> Self {
         let [w, x, y, z] = quaternion;
         let quaternion = Quaternion::new(w, x, y, z);

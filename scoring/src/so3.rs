@@ -1,8 +1,7 @@
 //! Rotation sets: near-uniform, of any size, closed under the turns of a grid, the same on every machine.
 //!
 //! [`rotation_set`] starts from a super-Fibonacci spiral (Alexa, CVPR 2022) and relaxes it. [`covering_radius`]
-//! measures how far from its nearest rotation of a set a rotation can lie. Rotations are unit quaternions, angles
-//! radians.
+//! measures the largest angle from a rotation to the nearest of a set. Rotations are unit quaternions, angles radians.
 
 use crate::grid_turn::GridTurn;
 use knotdock_structures::neighbours::Bins;
@@ -16,11 +15,10 @@ const IMAGES: usize = GridTurn::ALL.len();
 /// `count` rotations, closed under the eight turns of [`GridTurn`].
 ///
 /// Rotation 8 i + f is turn f of [`GridTurn::ALL`] after rotation 8 i, so that one transform of the ligand serves eight
-/// rotations, or four where the grid has no quarter turns. Where `count` is no multiple of eight the last images are
-/// left out.
+/// rotations, or four if the grid has no quarter turns.
 ///
-/// The spiral's rotations within one domain of the turns, about the identity, are taken. Up to [`MAX_RELAXED`] rotations, they and their images are relaxed like charges that repel each other. This evens out the
-/// domain's edges: the nearest rotation of the set is closer, on average, than in the spiral itself.
+/// Base rotations are those of a spiral within one domain of the turns, about the identity. Up to [`MAX_RELAXED`]
+/// rotations, they and their images are relaxed like charges that repel each other, which evens out the domain's edges.
 pub fn rotation_set(count: usize) -> Vec<UnitQuaternion<f64>> {
     if count > MAX_RELAXED {
         return spiral_set(count);

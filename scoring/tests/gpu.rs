@@ -7,7 +7,7 @@ mod adapter;
 use crate::scene::{Numbers, Pair, RADII, askew_cloud, cloud, engine_options, some_rotation};
 use adapter::adapter;
 use knotdock_scoring::Precision;
-use knotdock_scoring::engine::gpu::{GpuDevice, GpuEngine, GpuError, GridPeak, Turn};
+use knotdock_scoring::engine::gpu::{GpuDevice, GpuEngine, GpuError, GridPeak, LigandRotation};
 use knotdock_scoring::engine::{EngineOptions, Plan};
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::se3::Pose;
@@ -180,7 +180,7 @@ fn peaks_are_those_of_a_sorted_grid() {
         for rotation in rotations(3, 9) {
             let wanted = of_half_turns([true, false, true, true]);
             let peaks = engine
-                .best(&[Turn { rotation, wanted }], &mut |_| {})
+                .best(&[LigandRotation { rotation, wanted }], &mut |_| {})
                 .unwrap();
             let mut expected = Vec::new();
             for half_turn in (0..4).filter(|&half_turn| wanted[half_turn]) {
@@ -210,9 +210,9 @@ fn more_peaks_than_a_driver_counts_to_are_right_or_refused() {
     let pair = Pair::new(Precision::Single, &a, &b, engine_options(1e-2));
     let size = pair.engine.plan().size();
     let engine = GpuEngine::new(&gpu, &pair.engine, 1500, 1, MEMORY).unwrap();
-    let turns: Vec<Turn> = rotations(2, 9)
+    let turns: Vec<LigandRotation> = rotations(2, 9)
         .into_iter()
-        .map(|rotation| Turn {
+        .map(|rotation| LigandRotation {
             rotation,
             wanted: of_half_turns([true, false, false, false]),
         })
@@ -237,7 +237,7 @@ fn a_grid_gives_no_more_peaks_than_it_has() {
     let pair = Pair::new(Precision::Single, &one, &one, engine_options(1e-2));
     let longest = pair.engine.plan().size().into_iter().max().unwrap();
     let engine = GpuEngine::new(&gpu, &pair.engine, 50, longest, MEMORY).unwrap();
-    let turn = Turn {
+    let turn = LigandRotation {
         rotation: some_rotation(),
         wanted: of_half_turns([true; 4]),
     };
@@ -255,10 +255,10 @@ fn batches_change_no_bit() {
     let Some(gpu) = adapter() else { return };
     let (a, b) = (cloud(150, 12.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));
     let pair = Pair::new(Precision::Single, &a, &b, engine_options(1e-2));
-    let turns: Vec<Turn> = rotations(16, 11)
+    let turns: Vec<LigandRotation> = rotations(16, 11)
         .into_iter()
         .enumerate()
-        .map(|(index, rotation)| Turn {
+        .map(|(index, rotation)| LigandRotation {
             rotation,
             wanted: of_half_turns(std::array::from_fn(|image| (index >> image) % 3 != 1)),
         })

@@ -14,7 +14,6 @@ use crate::rank::sharp::SharpInputs;
 use crate::search::allowed::Known;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::exact_sum::ExactSum;
-use knotdock_scoring::lifted_axis::RadiusBasis;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Rescorer;
 use knotdock_structures::Error;
@@ -126,10 +125,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Error
     };
     let search = SearchPlan::new(Arc::new(engine), space, options, known, limits);
     let engine = &search.engine;
-    let radii = match engine.basis() {
-        RadiusBasis::Classes { receptor, ligand } => [receptor.len(), ligand.len()],
-        _ => engine.basis().sizes(engine.axis()).into(),
-    };
+    let radii = [0, 1].map(|side| engine.basis().size(engine.axis(), side));
     Ok(DockPlan {
         unit: scene.unit,
         angstrom: scene.angstrom,

@@ -15,7 +15,7 @@ const PADDING: usize = 2;
 /// Bytes that a node of the grid takes.
 pub const BYTES_A_NODE: u64 = 8;
 
-/// Where the nodes of a grid lie. Index (z ny + y) nx + x.
+/// Places of the nodes of a grid. Index (z ny + y) nx + x.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FieldGrid {
     /// The node of the lowest coordinates, relative to the balls' origin.
@@ -100,17 +100,14 @@ impl BallField {
         Self { grid, depth }
     }
 
-    /// Whether a node lies in no ball.
+    /// Whether a node is in no ball.
     pub fn is_free(&self, node: usize) -> bool {
         self.depth.get(node).is_some_and(|&depth| depth < 0.0)
     }
 }
 
-/// The surface at depth zero: triangles anticlockwise from outside, positions in the frame of the files, where the
-/// balls' origin is at `origin`. A vertex lies within a cell of the surface, and features narrower than a cell may be
-/// missing.
-///
-/// Method: naive surface nets (Gibson, MICCAI 1998), by the crate fast-surface-nets.
+/// The surface at depth zero by naive surface nets (Gibson, MICCAI 1998), in the frame of the files, where the balls'
+/// origin is at `origin`. Vertices are within a cell of the surface; features narrower than a cell may be missing.
 pub fn surface(field: &BallField, origin: [f64; 3]) -> Surface {
     let grid = field.grid;
     let size = grid.shape.map(|count| count as u32);

@@ -11,14 +11,14 @@ use super::morphology::held_cells::HeldCells;
 /// A solid S between balls: S(inner) in S in S(outer). The same holds for the result of every operation here.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Bracket {
-    /// Where the balls' coordinates begin, in the frame of the files.
+    /// Origin of the balls' coordinates, in the frame of the files.
     pub origin: [f64; 3],
     /// Balls inside the solid, relative to the origin. An empty set says that no point is known to be inside.
     pub inner: Vec<Ball>,
     /// Balls whose union holds the solid, relative to the origin.
     pub outer: Vec<Ball>,
-    /// Bound of the Hausdorff distance from the solid to either set; infinite where none is known, as where one of two
-    /// sets is empty.
+    /// Bound of the Hausdorff distance from the solid to either set; infinite if none is known, for
+    /// instance if one of two sets is empty.
     pub epsilon: f64,
 }
 
@@ -63,12 +63,9 @@ impl Bracket {
     /// This solid in a pose: the images of the balls, about the image of the origin.
     #[must_use]
     pub fn moved(&self, pose: &Pose) -> Self {
-        let turn = |balls: &[Ball]| balls.iter().map(|ball| turned(ball, pose)).collect();
         Self {
             origin: pose.apply(self.origin),
-            inner: turn(&self.inner),
-            outer: turn(&self.outer),
-            epsilon: self.epsilon,
+            ..self.map(|balls| balls.iter().map(|ball| turned(ball, pose)).collect())
         }
     }
 
@@ -87,9 +84,10 @@ impl Bracket {
     #[must_use]
     pub fn about(&self, origin: [f64; 3]) -> Self {
         let shift = [0, 1, 2].map(|axis| self.origin[axis] - origin[axis]);
-        let mut solid = self.map(|balls| balls.iter().map(|ball| shifted(ball, shift)).collect());
-        solid.origin = origin;
-        solid
+        Self {
+            origin,
+            ..self.map(|balls| balls.iter().map(|ball| shifted(ball, shift)).collect())
+        }
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! # Conventions
 //!
-//! - A solid is bounded by two sets of balls, a [`Bracket`]: inner balls lie in it, outer balls hold it.
+//! - A solid is bounded by two sets of balls, a [`Bracket`]: inner balls are in it, outer balls hold it.
 //! - Balls are stored relative to an origin, in the unit of the files, so that far coordinates cost no digits.
 //! - A pose is x -> R x + t, from the file's frame of the moved solid to that of the fixed one.
 

@@ -9,7 +9,7 @@ use crate::search::scan_engine::ScanEngine;
 #[cfg(feature = "gpu")]
 use crate::search::scan_engine::no_graphics;
 #[cfg(feature = "gpu")]
-use knotdock_scoring::engine::gpu::{GpuEngine, Turn};
+use knotdock_scoring::engine::gpu::{GpuEngine, LigandRotation};
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::{Peak, PeakLimits};
 use knotdock_structures::Error;
@@ -86,11 +86,11 @@ fn scan_on_card(
     let mut peaks: Vec<Peak> = Vec::new();
     for groups in groups.chunks(part) {
         progress.go_on()?;
-        let turn = |group: &RotationGroup| Turn {
+        let turn = |group: &RotationGroup| LigandRotation {
             rotation: plan.rotations.rotation(group.first).0,
             wanted: group.wanted,
         };
-        let turns: Vec<Turn> = groups.iter().map(turn).collect();
+        let turns: Vec<LigandRotation> = groups.iter().map(turn).collect();
         let found = gpu.best(&turns, &mut |images| progress.advance(images as u64));
         let found = found.map_err(no_graphics)?;
         peaks.extend(found.into_iter().map(|peak| Peak {

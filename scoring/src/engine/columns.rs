@@ -9,7 +9,7 @@ use crate::transform::Real;
 use crate::transform::modes::ModeSet;
 use num_complex::Complex;
 
-/// Where a column of the turned ligand's transform is read, of the half of the modes that is kept: kz >= 0, with B(-w)
+/// The source of a column of the turned ligand's transform, in the half of the modes that is kept: kz >= 0, with B(-w)
 /// = B*(w).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) struct Reading {

@@ -5,11 +5,10 @@ use super::packed::{LANES, Packing};
 use super::plan::Plan;
 use super::receptor_spectra::LigandFunctions;
 use crate::precision::Precision;
-use crate::terms::effect::{ActiveTerm, Effect, Term};
+use crate::terms::effect::{ActiveTerm, Effect, Term, classes};
 use crate::transform::Real;
 use knotdock_structures::Knots;
 use nalgebra::DMatrix;
-use std::collections::BTreeSet;
 
 /// Singular values of a class matrix below this share of the largest carry nothing.
 const NEGLIGIBLE: f64 = 1e-9;
@@ -27,9 +26,9 @@ pub struct EngineMemory {
     pub workspace_image: u64,
     /// One component of a workspace.
     pub workspace_component: u64,
-    /// What choosing a rank takes beside engines and their workspace: places of the voxels, multiplicities of the modes.
+    /// The choice of a rank, without engines and their workspace: places of the voxels, multiplicities of the modes.
     pub probing: u64,
-    /// What transforming the receptor takes beside its spectra, on one thread.
+    /// The receptor's transform, without its spectra, on one thread.
     pub transform: u64,
     /// Functions of each effect that is on, and the most components that they can have.
     pub effects: Vec<(Effect, EffectSize)>,
@@ -40,7 +39,7 @@ pub struct EngineMemory {
 pub struct EffectSize {
     /// Functions of the ligand.
     pub functions: usize,
-    /// Most components: the rank of what couples them with the receptor.
+    /// Most components: the rank of the matrix that couples them with the receptor.
     pub rank: usize,
 }
 
@@ -74,10 +73,8 @@ impl EngineMemory {
 
     /// Functions and components of all effects but one.
     pub fn without(&self, left_out: Option<Effect>) -> EffectSize {
-        let kept = self
-            .effects
-            .iter()
-            .filter(|(effect, _)| Some(*effect) != left_out);
+        let effects = self.effects.iter();
+        let kept = effects.filter(|(effect, _)| Some(*effect) != left_out);
         kept.fold(EffectSize::default(), |sum, (_, size)| EffectSize {
             functions: sum.functions + size.functions,
             rank: sum.rank + size.rank,
@@ -86,11 +83,8 @@ impl EngineMemory {
 
     /// Functions and components of one effect.
     pub fn only(&self, effect: Effect) -> EffectSize {
-        let of = |(other, _): &&(Effect, EffectSize)| *other == effect;
-        self.effects
-            .iter()
-            .find(of)
-            .map_or_else(EffectSize::default, |(_, size)| *size)
+        let found = self.effects.iter().find(|(other, _)| *other == effect);
+        found.map(|(_, size)| *size).unwrap_or_default()
     }
 
     /// A workspace of one image at a rank.
@@ -98,14 +92,13 @@ impl EngineMemory {
         self.workspace + rank as u64 * self.workspace_component
     }
 
-    /// A workspace of so many images, as many of them together as can be.
+    /// A workspace of a number of images, as many of them together as possible.
     pub fn workspace_of(&self, rank: usize, images: usize) -> u64 {
         let further = images.clamp(1, TOGETHER) as u64 - 1;
         self.workspace_at(rank) + further * self.workspace_image
     }
 
-    /// The choice of a rank among so many components, most of which it leaves out: the whole engine, with its workspace
-    /// or with an engine of half the rank.
+    /// The choice of a rank of at most `rank`: the whole engine, with its workspace or with an engine of half the rank.
     pub fn choice(&self, rank: usize) -> u64 {
         let half = rank.div_ceil(2);
         let probing = self.probing + self.workspace_at(rank);
@@ -145,12 +138,8 @@ fn effect_sizes(plan: &Plan, ligand: &Knots) -> Vec<(Effect, EffectSize)> {
 
 /// Rank of a term's class matrix over the classes that there are.
 fn matrix_rank(term: &Term) -> usize {
-    let classes = |labels: &[crate::terms::effect::Label]| -> Vec<usize> {
-        let counting = labels.iter().filter(|label| label.value != 0.0);
-        let classes: BTreeSet<usize> = counting.map(|label| label.class).collect();
-        classes.into_iter().collect()
-    };
-    let (rows, columns) = (classes(&term.receptor), classes(&term.ligand));
+    let of = |labels| classes(labels).into_iter().collect::<Vec<usize>>();
+    let (rows, columns) = (of(&term.receptor), of(&term.ligand));
     if rows.is_empty() || columns.is_empty() {
         return 0;
     }
@@ -161,9 +150,6 @@ fn matrix_rank(term: &Term) -> usize {
             .unwrap_or(0.0)
     };
     let singular = DMatrix::from_fn(rows.len(), columns.len(), value).singular_values();
-    let largest = singular.max();
-    let carried = singular
-        .iter()
-        .filter(|value| **value > NEGLIGIBLE * largest);
-    carried.count()
+    let least = NEGLIGIBLE * singular.max();
+    singular.iter().filter(|value| **value > least).count()
 }

@@ -72,11 +72,10 @@ impl<T: Real> Packet<T> {
     }
 }
 
-/// Where the packets of each column lie: [column][half][packet][component].
+/// Places of the packets of each column: [column][half][packet][component].
 ///
-/// The first half of a column holds kx = 0, 1, ..., `kx_max`, the second 0, -1, ..., -`kx_max`, so that a column that
-/// is read in falling order is the same packets with the halves exchanged. What fills the last packet of a half is of
-/// no column, and whatever comes of it is not looked at.
+/// The first half of a column holds kx = 0, 1, ..., `kx_max`, the second 0, -1, ..., -`kx_max`: a column in falling
+/// order is the same packets with the halves exchanged. The filling of the last packet of a half is never read.
 #[derive(Clone, Debug)]
 pub(super) struct Packing {
     /// For each column the packets before it, for one component; then their number.

@@ -60,8 +60,8 @@ pub fn choose_rank(
 
 /// Part of the first `rank` components that belongs to each function.
 ///
-/// A component's spectrum is the sum of the functions' spectra times its combination. A function's part of it is the
-/// square of what it contributes, as a share of the squares of all.
+/// A component's spectrum is the sum of the functions' spectra times its combination. A function's part of it is its
+/// squared contribution, as a share of the squares of all.
 fn shares(spectra: &ReceptorSpectra, combination: &DMatrix<f64>, rank: usize) -> Vec<f64> {
     let norms = spectra.norms();
     let mut shares = vec![0.0; norms.len()];
@@ -208,13 +208,8 @@ pub(crate) fn measured_error(
         .iter()
         .zip(&exact)
         .map(|((fast, _), exact)| (fast - exact).abs());
-    let (error, best) = (
-        errors.fold(0.0, f64::max),
-        exact.iter().copied().fold(0.0, f64::max),
-    );
-    let largest = exact
-        .iter()
-        .fold(0.0f64, |largest, score| largest.max(score.abs()));
-    let scale = if is_rewarded { best } else { largest };
+    let error = errors.fold(0.0, f64::max);
+    let size = |score: &f64| if is_rewarded { *score } else { score.abs() };
+    let scale = exact.iter().map(size).fold(0.0, f64::max);
     if error == 0.0 { 0.0 } else { error / scale }
 }

@@ -51,7 +51,7 @@ impl ReceptorSpectra {
     /// The plan's further terms belong to the score alone, not to slices and sensitivities.
     ///
     /// # Panics
-    /// Where the plan was made for other knots.
+    /// If the plan was made for other knots.
     pub fn new(
         plan: &Plan,
         receptor: &Knots,
@@ -165,7 +165,7 @@ impl ReceptorSpectra {
         self.ligand[(knot, function)]
     }
 
-    /// Where the receptor's middle lies in the box, Å.
+    /// The receptor's middle in the box, Å.
     pub(crate) fn center(&self) -> [f64; 3] {
         self.center
     }
@@ -251,7 +251,7 @@ impl LigandFunctions {
         let (_, size) = plan.shape_functions();
         let column = |b: usize| {
             (0..ligand.len())
-                .map(|j| plan.ligand_value(ligand, b, j))
+                .map(|j| plan.shape_value(ligand, 1, b, j))
                 .collect()
         };
         Self {
@@ -289,13 +289,13 @@ fn class_column(term: &Term, class: usize) -> Vec<f64> {
     term.ligand.iter().map(of_class).collect()
 }
 
-/// What a knot of the receptor weighs for a ligand knot of a class.
+/// Weight of a knot of the receptor for a ligand knot of a class.
 fn seen_by(term: &Term, class: usize, label: &Label) -> f64 {
     let row = term.matrix.get(label.class);
     label.value * row.and_then(|row| row.get(class)).unwrap_or(&0.0)
 }
 
-/// What a term is to the ligand's knots of one class.
+/// The part of a term for the ligand's knots of one class.
 struct ClassFunction<T> {
     /// The receptor's transform as the class feels it, through the term's kernel.
     spectrum: Vec<Complex<T>>,
@@ -347,7 +347,7 @@ impl<T: Real> Receptor<T> {
             let mut inside = Vec::new();
             let mut weights = Vec::new();
             for i in 0..receptor.len() {
-                let value = plan.receptor_value(receptor, a, i);
+                let value = plan.shape_value(receptor, 0, a, i);
                 if value != 0.0 {
                     inside.push(self.points[i]);
                     weights.push(T::of(value));
@@ -382,8 +382,8 @@ impl<T: Real> Receptor<T> {
             .collect()
     }
 
-    /// The function of one class; `table` is the term's kernel by wave number. `None` where no knot of the ligand is of
-    /// the class, or none of the receptor means anything to it.
+    /// The function of one class; `table` is the term's kernel by wave number. `None` if no knot of the ligand is of the
+    /// class, or none of the receptor has a weight for it.
     fn class_function(
         &self,
         term: &Term,

@@ -2,15 +2,20 @@
 
 use super::tables::Line;
 use super::{ExactScorer, PoseGradient};
-use crate::blocks::{LANES, Near};
+use crate::blocks::{LANES, NearPoints};
 use crate::se3::Pose;
+use crate::vectorized::with_simd;
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 impl ExactScorer {
     /// Score of one pose and its gradient over translation (Å) and rotation (radians) about the ligand's centre.
     pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
-        Arch::new().dispatch(Gradient { scorer: self, pose })
+        let scorer = self;
+        with_simd!(
+            <'a>(scorer: &'a ExactScorer, pose: &'a Pose) -> (f64, PoseGradient),
+            |simd| scorer.gradient_with(simd, pose)
+        )
     }
 
     #[inline(always)]
@@ -18,11 +23,11 @@ impl ExactScorer {
         let (rotation, center) = self.placed(pose);
         let mut score = 0.0;
         let mut gradient = PoseGradient::default();
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         for (index, knot) in self.ligand.iter().enumerate() {
             let arm = rotation * knot.position;
             let x: [f64; 3] = (arm + center).into();
-            let starts = self.tables.starts(knot.class);
+            let starts = &self.tables.starts[knot.class];
             let mut value = 0.0;
             let mut force = [0.0; 3];
             self.receptor.near(
@@ -44,7 +49,7 @@ impl ExactScorer {
                             debug_assert!(start.is_some(), "every class has its tables");
                             let line = self
                                 .tables
-                                .scores()
+                                .scores
                                 .get((start.unwrap_or(0) + panel) as usize);
                             let Some(line) = line else {
                                 debug_assert!(false, "a panel beyond the table");
@@ -77,26 +82,11 @@ impl ExactScorer {
                 },
             );
             score += value;
-            let force = Vector3::from(force) * self.tables.panels_per_unit();
+            let force = Vector3::from(force) * self.tables.panels_per_unit;
             gradient.force += force;
             gradient.torque += arm.cross(&force);
         }
         (score, gradient)
-    }
-}
-
-/// Score and gradient of a pose.
-struct Gradient<'a> {
-    scorer: &'a ExactScorer,
-    pose: &'a Pose,
-}
-
-impl WithSimd for Gradient<'_> {
-    type Output = (f64, PoseGradient);
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        self.scorer.gradient_with(simd, self.pose)
     }
 }
 

@@ -1,7 +1,7 @@
 //! The exact score: the pair sum over all knots in f64, with its gradient over the six degrees of freedom.
 //!
-//! O(ligand knots x receptor knots within reach): receptor knots lie in compact blocks of eight, and of the blocks that
-//! come within reach of a ligand knot only the knots within reach are summed. Kernels come from tables over distance
+//! O(ligand knots x receptor knots within reach): receptor knots are in compact blocks of eight, and of the blocks within
+//! reach of a ligand knot only the knots within reach are summed. Kernels come from tables over distance
 //! that follow the ranking kernel to about 1e-9 of its largest value; `unfiltered` evaluates B&I's own kernel directly.
 //! Lengths in Å; positions are taken relative to the middles of the two sets, so that large file coordinates cost no
 //! digits. Sums run in one fixed order.
@@ -34,7 +34,7 @@ pub struct ScoreTerms {
     pub terms: [f64; Effect::ALL.len()],
 }
 
-/// What shape's term is made of at one pose.
+/// The parts of shape's term at one pose.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ShapeParts {
     /// Unweighted slices at rho = 0, r0, 2 r0.

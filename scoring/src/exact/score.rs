@@ -4,15 +4,16 @@
 //! cache line, and the last product need not be summed across before all pairs are.
 //!
 //! Closures are inlined by order: what the compiler leaves outside the dispatched function is compiled without its
-//! vector features. Vectors are spelt out where it found none of its own: that took the score with its slices from 0.71
+//! vector features. Vectors are spelt out where it found none: that took the score with its slices from 0.71
 //! to 0.39 of the plain loop's time (`cargo bench --bench exact`, AMD EPYC, AVX2).
 
 use super::tables::{Line, PairTerm, Places};
 use super::{ExactScore, ExactScorer, ScoreTerms, ShapeParts};
-use crate::blocks::{LANES, Near, vectors, vectors_mut};
+use crate::blocks::{LANES, NearPoints, vectors, vectors_mut};
 use crate::se3::Pose;
 use crate::terms::effect::Effect;
-use pulp::{Arch, Simd, WithSimd};
+use crate::vectorized::with_simd;
+use pulp::Simd;
 
 impl ExactScorer {
     /// The score of one pose and nothing else: the sum of [`Self::terms`].
@@ -22,16 +23,45 @@ impl ExactScorer {
 
     /// Score of one pose by term.
     pub fn terms(&self, pose: &Pose) -> ScoreTerms {
-        Arch::new().dispatch(ByTerm { scorer: self, pose })
+        let scorer = self;
+        with_simd!(<'a>(scorer: &'a ExactScorer, pose: &'a Pose) -> ScoreTerms, |simd| {
+            let ([shape], mut terms) = scorer.sums(
+                simd,
+                pose,
+                &scorer.effects,
+                #[inline(always)]
+                |index| scorer.tables.scores.get(index).map(std::array::from_ref),
+            );
+            terms[Effect::Shape as usize] = shape;
+            ScoreTerms {
+                score: terms.iter().sum(),
+                terms,
+            }
+        })
     }
 
-    /// What shape's term is made of at one pose: its slices, and the unfiltered score.
+    /// The parts of shape's term at one pose: its slices, and the unfiltered score.
     pub fn shape(&self, pose: &Pose) -> ShapeParts {
-        Arch::new().dispatch(ByPart { scorer: self, pose })
+        let scorer = self;
+        with_simd!(<'a>(scorer: &'a ExactScorer, pose: &'a Pose) -> ShapeParts, |simd| {
+            let (slices, _) = scorer.sums(
+                simd,
+                pose,
+                &[],
+                #[inline(always)]
+                |index| scorer.tables.slices.get(index),
+            );
+            let weights = scorer.kernel.options().slice_weights();
+            let unfiltered = scorer.unfiltered_slices(simd, pose);
+            ShapeParts {
+                slices,
+                unfiltered: weighted(weights, unfiltered),
+            }
+        })
     }
 
-    /// Score and terms of one pose with the parts of shape, whose term is the weighted sum of the slices to the last
-    /// digit. [`Self::terms`] sums it by a table of its own and differs by rounding.
+    /// Score and terms of one pose with the parts of shape. Shape's term is the weighted sum of the slices to the last
+    /// digit; [`Self::terms`] sums it by another table and differs by rounding.
     pub fn score(&self, pose: &Pose) -> ExactScore {
         let (mut by_term, shape) = (self.terms(pose), self.shape(pose));
         let weights = self.kernel.options().slice_weights();
@@ -53,10 +83,10 @@ impl ExactScorer {
         let reach = self.kernel.reach();
         let mut totals = [0.0; KERNELS];
         let mut terms = [0.0; Effect::ALL.len()];
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         for (index, knot) in self.ligand.iter().enumerate() {
             let x = (rotation * knot.position + center).into();
-            let starts = self.tables.starts(knot.class);
+            let starts = &self.tables.starts[knot.class];
             self.receptor.near(
                 simd,
                 &x,
@@ -103,7 +133,7 @@ impl ExactScorer {
     fn add_up<'a, S: Simd, const KERNELS: usize>(
         &self,
         simd: S,
-        near: &Near,
+        near: &NearPoints,
         pair: impl Fn(u32, u32) -> Option<(f64, &'a [Line; KERNELS])>,
     ) -> [f64; KERNELS] {
         // Two sums by name, not by index, stay in registers.
@@ -141,10 +171,10 @@ impl ExactScorer {
         let cone = self.kernel.cone();
         let offsets = self.kernel.options().slice_offsets();
         let mut totals = [0.0; 3];
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         for knot in &self.ligand {
             let x = (rotation * knot.position + center).into();
-            let radius_sums = self.tables.sums(knot.class);
+            let radius_sums = &self.tables.sums[knot.class];
             let mut sums = [0.0; 3];
             self.receptor.near(
                 simd,
@@ -187,61 +217,6 @@ impl ExactScorer {
 /// Slices as one sum.
 fn weighted(weights: [f64; 3], slices: [f64; 3]) -> f64 {
     (0..3).map(|i| weights[i] * slices[i]).sum()
-}
-
-/// The score of a pose by term.
-struct ByTerm<'a> {
-    scorer: &'a ExactScorer,
-    pose: &'a Pose,
-}
-
-impl WithSimd for ByTerm<'_> {
-    type Output = ScoreTerms;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> ScoreTerms {
-        let Self { scorer, pose } = self;
-        let ([shape], mut terms) = scorer.sums(
-            simd,
-            pose,
-            &scorer.effects,
-            #[inline(always)]
-            |index| scorer.tables.scores().get(index).map(std::array::from_ref),
-        );
-        terms[Effect::Shape as usize] = shape;
-        ScoreTerms {
-            score: terms.iter().sum(),
-            terms,
-        }
-    }
-}
-
-/// The slices of a pose and the unfiltered score.
-struct ByPart<'a> {
-    scorer: &'a ExactScorer,
-    pose: &'a Pose,
-}
-
-impl WithSimd for ByPart<'_> {
-    type Output = ShapeParts;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> ShapeParts {
-        let Self { scorer, pose } = self;
-        let (slices, _) = scorer.sums(
-            simd,
-            pose,
-            &[],
-            #[inline(always)]
-            |index| scorer.tables.slices().get(index),
-        );
-        let weights = scorer.kernel.options().slice_weights();
-        let unfiltered = scorer.unfiltered_slices(simd, pose);
-        ShapeParts {
-            slices,
-            unfiltered: weighted(weights, unfiltered),
-        }
-    }
 }
 
 /// Powers of the argument of a pair, as vectors of which the first ones make four numbers.

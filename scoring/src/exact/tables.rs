@@ -23,19 +23,20 @@ const ROUNDING: f64 = 6755399441055744.0;
 /// Tables of all pairs of radii.
 pub(super) struct PairTables {
     /// Score kernel by line: -lambda^2, 2 lambda, -1 times the slices.
-    scores: Vec<Line>,
+    pub scores: Vec<Line>,
     /// Slices at rho = 0, r0, 2 r0 by line.
-    slices: Vec<[Line; 3]>,
+    pub slices: Vec<[Line; 3]>,
     /// [ligand class][receptor class]: line at which the pair's table starts.
-    starts: Vec<Vec<u32>>,
+    pub starts: Vec<Vec<u32>>,
     /// [ligand class][receptor class]: radius sum in Å.
-    sums: Vec<Vec<f64>>,
-    panels_per_unit: f64,
+    pub sums: Vec<Vec<f64>>,
+    /// Panels per Å.
+    pub panels_per_unit: f64,
     /// The panel of zeros.
     last: f64,
 }
 
-/// Where eight distances fall in a table.
+/// Places of eight distances in a table.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Places {
     /// Numbers of panels, in the low bits.
@@ -79,7 +80,7 @@ pub(super) fn bytes_of(kernel: &RankingKernel) -> u64 {
     (panels_of(kernel) as u64 + 1) * size_of::<[Line; 4]>() as u64
 }
 
-/// Functions of a distance on so many panels, and the panel of zeros after them.
+/// Functions of a distance on a number of panels, and the panel of zeros after them.
 fn lines_of<const COUNT: usize>(
     panels: f64,
     panels_per_unit: f64,
@@ -141,33 +142,6 @@ impl PairTables {
         lines.map(|[line]| line).collect()
     }
 
-    /// First lines of the tables that a ligand class needs, by receptor class.
-    pub fn starts(&self, ligand_class: usize) -> &[u32] {
-        &self.starts[ligand_class]
-    }
-
-    /// Radius sums in Å of a ligand class, by receptor class.
-    pub fn sums(&self, ligand_class: usize) -> &[f64] {
-        &self.sums[ligand_class]
-    }
-
-    /// Panels per Å.
-    pub fn panels_per_unit(&self) -> f64 {
-        self.panels_per_unit
-    }
-
-    /// Score lines.
-    #[inline(always)]
-    pub fn scores(&self) -> &[Line] {
-        &self.scores
-    }
-
-    /// Slice lines.
-    #[inline(always)]
-    pub fn slices(&self) -> &[[Line; 3]] {
-        &self.slices
-    }
-
     /// Panels and arguments of squared distances.
     #[inline(always)]
     pub fn place<S: Simd>(&self, simd: S, squares: &[f64; LANES]) -> Places {
@@ -227,7 +201,7 @@ impl PairTerm {
         }
     }
 
-    /// What ligand knot `knot` is to the term; `None` where it takes no part.
+    /// Value and matrix row of a ligand knot; `None` if it takes no part.
     #[inline(always)]
     pub fn of(&self, knot: usize) -> Option<(f64, &[f64])> {
         let label = self.ligand.get(knot)?;
@@ -235,7 +209,7 @@ impl PairTerm {
         (label.value != 0.0).then_some((label.value, row.as_slice()))
     }
 
-    /// What a receptor knot is to a ligand knot by the latter's row of the class matrix; its own value comes later.
+    /// Weight of a receptor knot by a ligand knot's row of the class matrix, without the ligand knot's value.
     #[inline(always)]
     pub fn weight(&self, knot: u32, row: &[f64]) -> f64 {
         let Some(label) = self.receptor.get(knot as usize) else {

@@ -8,7 +8,7 @@ use serde::{Deserialize, Deserializer, Serializer};
 /// Reads an exponent above zero, `inf` among them.
 ///
 /// # Errors
-/// A sentence on what is needed, where the text is no such number.
+/// A message if the text is no such number.
 pub fn parse(text: &str) -> Result<f64, String> {
     match text.trim().parse::<f64>() {
         Ok(value) if value > 0.0 => Ok(value),

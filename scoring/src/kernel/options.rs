@@ -50,7 +50,7 @@ pub enum KernelError {
         name: &'static str,
         /// Its value.
         value: f64,
-        /// What it must satisfy.
+        /// Its range.
         bound: &'static str,
     },
     /// The kernel is so long against its resolution, or rings so long, that its tables would take more than seconds, up
@@ -69,16 +69,16 @@ pub enum KernelError {
 
 /// Longest reach of a kernel in resolutions. Tables take the square of it in time. Those of the lifted axis take 5 s
 /// here on one core (measured: 2.7 s at 100, 11 s at 200), those of a pair sum a second for each sum of two radii.
-pub(super) const LONGEST: f64 = 140.0;
+pub(super) const MAX_REACH: f64 = 140.0;
 /// Most resolutions that the low-pass may ring over: those of a pass length a hundredth above the resolution.
 pub(super) const MAX_RING_LENGTH: f64 = 102.0;
 /// Smallest balls of a kernel, in resolutions: they overlap by the cube of this, and below it lengths run into denormal
 /// numbers.
-pub(super) const SMALLEST: f64 = 1e-6;
-/// What errors call `Trim::BehandishIlies::length`.
+pub(super) const MIN_RADII: f64 = 1e-6;
+/// Name of `Trim::BehandishIlies::length` in errors.
 pub(super) const TRIM_LENGTH: &str = "length of the trim";
 /// Largest |lambda|: its square times weights and volumes must stay within single precision.
-const LARGEST_LAMBDA: f64 = 1e6;
+const MAX_LAMBDA: f64 = 1e6;
 
 impl KernelOptions {
     /// Weights of the slices at rho = 0, r0, 2 r0 in the score: -lambda^2, 2 lambda, -1.
@@ -114,34 +114,33 @@ impl KernelOptions {
 
     pub(super) fn check(&self) -> Result<Bump, KernelError> {
         let bump = Bump::new(self.alpha)?;
-        let finite = |name, value: f64, ok: bool, bound| {
-            if value.is_finite() && ok {
-                Ok(())
-            } else {
-                Err(KernelError::Length { name, value, bound })
-            }
+        let trim = match self.trim {
+            Trim::FlatTop => 1.0,
+            Trim::BehandishIlies { length } => length,
         };
-        finite(
-            "lambda",
-            self.lambda,
-            self.lambda.abs() <= LARGEST_LAMBDA,
-            "between -1e6 and 1e6",
-        )?;
-        finite("offset r0", self.offset, self.offset >= 0.0, "not below 0")?;
-        finite(
-            "resolution",
-            self.resolution,
-            self.resolution > 0.0,
-            "above 0",
-        )?;
-        finite(
-            "pass length",
-            self.pass_length,
-            self.pass_length > self.resolution,
-            "above the resolution",
-        )?;
-        if let Trim::BehandishIlies { length } = self.trim {
-            finite(TRIM_LENGTH, length, length > 0.0, "above 0")?;
+        let (lambda, offset, pass) = (self.lambda, self.offset, self.pass_length);
+        let resolution = self.resolution;
+        let bounds = [
+            (
+                "lambda",
+                lambda,
+                lambda.abs() <= MAX_LAMBDA,
+                "between -1e6 and 1e6",
+            ),
+            ("offset r0", offset, offset >= 0.0, "not below 0"),
+            ("resolution", resolution, resolution > 0.0, "above 0"),
+            (
+                "pass length",
+                pass,
+                pass > resolution,
+                "above the resolution",
+            ),
+            (TRIM_LENGTH, trim, trim > 0.0, "above 0"),
+        ];
+        for (name, value, is_within, bound) in bounds {
+            if !(value.is_finite() && is_within) {
+                return Err(KernelError::Length { name, value, bound });
+            }
         }
         Ok(bump)
     }

@@ -8,7 +8,7 @@ use super::product::ProductKernel;
 use super::table::Table;
 use crate::rigid_move::{PoseGradient, center};
 use crate::se3::Pose;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use nalgebra::{Rotation3, Vector3};
@@ -196,10 +196,7 @@ impl ProductScorer {
 
     /// g_0, g_1, g_2.
     fn slices(&self, tables: &PairTables, pose: &Pose) -> [f64; 3] {
-        vectorized(
-            #[inline(always)]
-            || self.slices_inline(tables, pose),
-        )
+        vectorize!(self.slices_inline(tables, pose))
     }
 
     #[inline(always)]

@@ -6,7 +6,7 @@
 //! modes and the kernels of further effects alike, and all of them end at one reach and one frequency.
 //!
 //! Both integrals are trapezoidal sums of smooth even functions that vanish with all derivatives at their ends, for
-//! which that rule converges faster than any power. What the sums leave out is part of the definition: every engine and
+//! which that rule converges faster than any power. The remainder of the sums is part of the definition: every engine and
 //! the exact sum use them.
 
 use super::radial_transform::sinc;
@@ -61,7 +61,7 @@ impl RadialFilter {
         }
     }
 
-    /// Where the window of such a filter begins to fall, and where it ends.
+    /// Start and end of the fall of such a filter's window.
     pub(super) fn window_ends(pass: f64, stop: f64, support: f64, reach_factor: f64) -> [f64; 2] {
         let ring = 1.0 / (stop - pass);
         let start = support + 0.15 * ring;

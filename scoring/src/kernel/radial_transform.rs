@@ -21,51 +21,37 @@ pub fn sinc(z: f64) -> f64 {
 /// was built for (the tests hold it to 1e-10 against closed forms and mpmath).
 #[derive(Clone, Debug)]
 pub struct RadialTransform {
-    kind: Kind,
-}
-
-#[derive(Clone, Debug)]
-enum Kind {
-    /// alpha = infinity: the ball itself, in closed form.
-    Ball,
-    /// Quadrature nodes x_i and 4 pi x_i^2 psi(x_i) times their weights.
-    Quadrature { nodes: Vec<f64>, weights: Vec<f64> },
+    /// Quadrature nodes x_i with 4 pi x_i^2 psi(x_i) times their weights; `None` for the ball itself (alpha =
+    /// infinity), in closed form.
+    nodes: Option<Vec<(f64, f64)>>,
 }
 
 impl RadialTransform {
     /// Prepares the transform for arguments |q| <= `q_max`.
     pub fn new(bump: Bump, q_max: f64) -> Self {
         if bump.alpha().is_infinite() {
-            return Self { kind: Kind::Ball };
+            return Self { nodes: None };
         }
         // In the middle of the interval dx = (pi/4) dt, so the step must also resolve cos(2 pi q x).
         let step = (1.0 / 64.0f64).min(0.25 / (q_max.abs() + 1.0));
-        let half = (4.0 / step).ceil() as i64;
-        let mut nodes = Vec::new();
-        let mut weights = Vec::new();
-        for node in double_exponential::nodes(step, half) {
+        let nodes = double_exponential::nodes(step, (4.0 / step).ceil() as i64).map(|node| {
             let x = node.x();
-            let weight = 4.0 * PI * x * x * bump.value(x) * node.slope * step;
-            if weight > 1e-22 {
-                nodes.push(x);
-                weights.push(weight);
-            }
-        }
+            (x, 4.0 * PI * x * x * bump.value(x) * node.slope * step)
+        });
         Self {
-            kind: Kind::Quadrature { nodes, weights },
+            nodes: Some(nodes.filter(|&(_, weight)| weight > 1e-22).collect()),
         }
     }
 
     /// psi^(q) of the unit ball's bump.
     pub fn value(&self, q: f64) -> f64 {
-        match &self.kind {
-            Kind::Ball => ball(q),
-            Kind::Quadrature { nodes, weights } => nodes
-                .iter()
-                .zip(weights)
-                .map(|(x, weight)| weight * sinc(2.0 * q * x))
-                .sum(),
-        }
+        let Some(nodes) = &self.nodes else {
+            return ball(q);
+        };
+        nodes
+            .iter()
+            .map(|(x, weight)| weight * sinc(2.0 * q * x))
+            .sum()
     }
 }
 

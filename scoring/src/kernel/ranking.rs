@@ -9,7 +9,9 @@
 //! Both are the work of [`super::radial_filter`].
 
 use super::cone::{Cone, Trim};
-use super::options::{KernelError, KernelOptions, LONGEST, MAX_RING_LENGTH, SMALLEST, TRIM_LENGTH};
+use super::options::{
+    KernelError, KernelOptions, MAX_REACH, MAX_RING_LENGTH, MIN_RADII, TRIM_LENGTH,
+};
 use super::radial_filter::RadialFilter;
 use super::radial_transform::RadialTransform;
 use super::table::Table;
@@ -25,7 +27,7 @@ pub struct RankingKernel {
 }
 
 impl RankingKernel {
-    /// The kernel for pairs whose radius sums r + s lie in [`sum_low`, `sum_high`], Å. `reach_factor` (1 or more)
+    /// The kernel for pairs with radius sums r + s in [`sum_low`, `sum_high`], Å. `reach_factor` (1 or more)
     /// lengthens the window's fall, which sharpens the kernel's own cut in frequency: 1 serves a tolerance of 1e-2, 4
     /// one of 1e-6.
     ///
@@ -45,7 +47,7 @@ impl RankingKernel {
             high: sum_high + 2.0 * options.offset,
         };
         // Written so that NaN is refused with the rest.
-        if !(SMALLEST * options.resolution..).contains(&cone.high) {
+        if !(MIN_RADII * options.resolution..).contains(&cone.high) {
             return Err(KernelError::Length {
                 name: "largest sum of radii and skins",
                 value: cone.high,
@@ -70,7 +72,7 @@ impl RankingKernel {
             Trim::FlatTop => reach,
             Trim::BehandishIlies { length } => reach.max(2.0 * length),
         };
-        if !(0.0..=LONGEST).contains(&(longest / options.resolution))
+        if !(0.0..=MAX_REACH).contains(&(longest / options.resolution))
             || !(0.0..=MAX_RING_LENGTH).contains(&ring)
         {
             return Err(KernelError::TooLong {
@@ -192,7 +194,7 @@ impl RankingKernel {
     }
 
     /// Whether B&I's own kernel rewards a pair of balls at some distance. Without a reward (lambda = 0, no skin) the best
-    /// score is what the low-pass rings to.
+    /// score is ringing of the low-pass.
     pub(crate) fn rewards(&self) -> bool {
         let high = self.cone.high - 2.0 * self.options.offset;
         [self.cone.low, high].into_iter().any(|sum| {

@@ -21,17 +21,11 @@ impl<const LANES: usize> Table<LANES> {
         let count = (end / panel).ceil().max(1.0) as usize;
         let width = end / count as f64;
         let fit = PanelFit::new();
-        let coefficients = (0..count)
-            .map(|index| {
-                let middle = width * (index as f64 + 0.5);
-                fit.coefficients(middle, 0.5 * width, &mut function)
-            })
-            .collect();
-        Self {
-            end,
-            panels_per_unit: count as f64 / end,
-            coefficients,
-        }
+        let panel = |index: usize| {
+            let middle = width * (index as f64 + 0.5);
+            fit.coefficients(middle, 0.5 * width, &mut function)
+        };
+        Self::of(end, (0..count).map(panel).collect())
     }
 
     /// The table of some panels' coefficients, [panel][power][lane], which share [0, end] equally.

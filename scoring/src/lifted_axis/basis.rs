@@ -9,33 +9,24 @@ use knotdock_structures::numeric::chebyshev;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
-/// The functions of a radius in which receptor and ligand meet the lifted axis.
+/// The functions of a radius in which receptor and ligand meet the lifted axis. Radii are in Å, those of the receptor
+/// first.
 #[derive(Clone, Debug, PartialEq)]
 pub enum RadiusBasis {
-    /// One indicator for each distinct radius (Å): exact, and the shortest when radii are few.
-    Classes {
-        /// Distinct radii of the receptor.
-        receptor: Vec<f64>,
-        /// Distinct radii of the ligand.
-        ligand: Vec<f64>,
-    },
+    /// One indicator for each distinct radius: exact, and the shortest when radii are few.
+    Classes([Vec<f64>; 2]),
     /// 1, cos and sin of 2 pi eta_k r for k = 1..=K: the lifted modes themselves, for any number of radii.
     Modes,
-    /// Lagrange polynomials on Chebyshev nodes (Å): any number of radii for the product kernel, whose factors are
-    /// smooth in the radius and have no lifted modes.
-    Nodes {
-        /// Nodes over the receptor's radii.
-        receptor: Vec<f64>,
-        /// Nodes over the ligand's radii.
-        ligand: Vec<f64>,
-    },
+    /// Lagrange polynomials on Chebyshev nodes: any number of radii for the product kernel, whose factors are smooth in
+    /// the radius and have no lifted modes.
+    Nodes([Vec<f64>; 2]),
 }
 
 impl RadiusBasis {
-    /// The shorter of the two for these radii.
-    pub fn choose(axis: &LiftedAxis, receptor: Vec<f64>, ligand: Vec<f64>) -> Self {
-        if receptor.len().max(ligand.len()) <= 2 * axis.modes() + 1 {
-            Self::Classes { receptor, ligand }
+    /// The shorter of classes and modes for these radii.
+    pub fn choose(axis: &LiftedAxis, radii: [Vec<f64>; 2]) -> Self {
+        if longest(&radii) <= 2 * axis.modes() + 1 {
+            Self::Classes(radii)
         } else {
             Self::Modes
         }
@@ -46,43 +37,31 @@ impl RadiusBasis {
     /// `MAX_NODES` nodes bring it.
     pub fn for_product(
         kernel: &ProductKernel,
-        receptor: Vec<f64>,
-        ligand: Vec<f64>,
+        radii: [Vec<f64>; 2],
         w_max: f64,
         tolerance: f64,
     ) -> (Self, f64) {
-        if receptor.len().max(ligand.len()) <= MAX_NODES {
-            return (Self::Classes { receptor, ligand }, 0.0);
+        if longest(&radii) <= MAX_NODES {
+            return (Self::Classes(radii), 0.0);
         }
-        let (receptor, a) = nodes_for(kernel, &receptor, w_max, tolerance);
-        let (ligand, b) = nodes_for(kernel, &ligand, w_max, tolerance);
-        (Self::Nodes { receptor, ligand }, a.max(b))
+        let [(receptor, a), (ligand, b)] =
+            radii.map(|radii| nodes_for(kernel, &radii, w_max, tolerance));
+        (Self::Nodes([receptor, ligand]), a.max(b))
     }
 
-    /// Number of functions on the receptor's and on the ligand's side.
-    pub fn sizes(&self, axis: &LiftedAxis) -> (usize, usize) {
+    /// Number of functions on the receptor's (0) or the ligand's side (1).
+    pub fn size(&self, axis: &LiftedAxis, side: usize) -> usize {
         match self {
-            Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand } => {
-                (receptor.len(), ligand.len())
-            }
-            Self::Modes => (2 * axis.modes() + 1, 2 * axis.modes() + 1),
+            Self::Classes(radii) | Self::Nodes(radii) => radii[side].len(),
+            Self::Modes => 2 * axis.modes() + 1,
         }
     }
 
-    /// Value of function `index` at a radius of the receptor.
-    pub fn receptor_value(&self, axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
+    /// Value of function `index` of a side at a radius.
+    pub fn value(&self, axis: &LiftedAxis, side: usize, index: usize, radius: f64) -> f64 {
         match self {
-            Self::Classes { receptor, .. } => f64::from(u8::from(receptor[index] == radius)),
-            Self::Nodes { receptor, .. } => node_value(receptor, index, radius),
-            Self::Modes => mode_value(axis, index, radius),
-        }
-    }
-
-    /// Value of function `index` at a radius of the ligand.
-    pub fn ligand_value(&self, axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
-        match self {
-            Self::Classes { ligand, .. } => f64::from(u8::from(ligand[index] == radius)),
-            Self::Nodes { ligand, .. } => node_value(ligand, index, radius),
+            Self::Classes(radii) => f64::from(u8::from(radii[side][index] == radius)),
+            Self::Nodes(nodes) => node_value(&nodes[side], index, radius),
             Self::Modes => mode_value(axis, index, radius),
         }
     }
@@ -98,7 +77,7 @@ impl RadiusBasis {
         w_max: f64,
     ) -> Option<Table<1>> {
         let profile = match self {
-            Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand } => {
+            Self::Classes([receptor, ligand]) | Self::Nodes([receptor, ligand]) => {
                 let sigma = receptor[a] + ligand[b];
                 axis.profile(|axis, k| {
                     let turn = Complex64::cis(-2.0 * PI * axis.eta(k) * sigma)
@@ -134,10 +113,9 @@ impl RadiusBasis {
         }))
     }
 
-    /// As [`Self::coupling`] for a product kernel, which needs no lifted modes: each basis function stands for a
-    /// radius, and the two bodies' transforms at their radii multiply. Of `layers` where grown balls have weights of
-    /// their own, else of the double skins. `None` for [`Self::Modes`], whose functions stand for no radius, and
-    /// where it is zero.
+    /// As [`Self::coupling`] for a product kernel: the product of the two bodies' transforms at the radii of the
+    /// functions. Of `layers` if grown balls have separate weights, else of the double skins. `None` for
+    /// [`Self::Modes`], whose functions have no radius, and if it is zero.
     pub fn product_coupling(
         &self,
         kernel: &ProductKernel,
@@ -146,7 +124,7 @@ impl RadiusBasis {
         layers: Option<(Body, Body)>,
         w_max: f64,
     ) -> Option<Table<1>> {
-        let (Self::Classes { receptor, ligand } | Self::Nodes { receptor, ligand }) = self else {
+        let (Self::Classes([receptor, ligand]) | Self::Nodes([receptor, ligand])) = self else {
             return None;
         };
         let (r, s) = (receptor[a], ligand[b]);
@@ -166,6 +144,11 @@ impl RadiusBasis {
     }
 }
 
+/// Number of radii of the side that has more.
+fn longest(radii: &[Vec<f64>; 2]) -> usize {
+    radii[0].len().max(radii[1].len())
+}
+
 fn mode_value(axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
     let angle = 2.0 * PI * axis.eta(index.div_ceil(2) as i64) * radius;
     if index % 2 == 1 || index == 0 {
@@ -175,12 +158,11 @@ fn mode_value(axis: &LiftedAxis, index: usize, radius: f64) -> f64 {
     }
 }
 
-/// Most nodes of [`super::RadiusBasis::Nodes`], and most distinct radii that are carried as they are beside a product
-/// kernel.
-pub(super) const MAX_NODES: usize = 32;
+/// Most nodes of [`RadiusBasis::Nodes`], and most distinct radii of a product kernel that each have a class.
+const MAX_NODES: usize = 32;
 
 /// Value at `radius` of the Lagrange polynomial that is 1 at node `index`.
-pub(super) fn node_value(nodes: &[f64], index: usize, radius: f64) -> f64 {
+fn node_value(nodes: &[f64], index: usize, radius: f64) -> f64 {
     let own = nodes[index];
     nodes
         .iter()
@@ -192,12 +174,7 @@ pub(super) fn node_value(nodes: &[f64], index: usize, radius: f64) -> f64 {
 
 /// The fewest Chebyshev nodes over a range of radii that carry both bodies' transforms to `tolerance`, and the error
 /// reached.
-pub(super) fn nodes_for(
-    kernel: &ProductKernel,
-    radii: &[f64],
-    w_max: f64,
-    tolerance: f64,
-) -> (Vec<f64>, f64) {
+fn nodes_for(kernel: &ProductKernel, radii: &[f64], w_max: f64, tolerance: f64) -> (Vec<f64>, f64) {
     let (Some(&low), Some(&high)) = (radii.first(), radii.last()) else {
         return (Vec::new(), 0.0);
     };

@@ -65,12 +65,12 @@ impl LiftedAxis {
         Self { period, profiles }
     }
 
-    /// The fewest modes whose series reproduces at all radius sums in use the kernel to `tolerance` and the score to ten
-    /// times that, each relative to its largest transform value. Returns them with the error reached, a tenth of the
-    /// score's if that is more; it is above the tolerance where too many modes would be needed.
+    /// The fewest modes whose series reproduces the kernel to `tolerance` and the score to ten times that, relative to the
+    /// largest transform values at all radius sums in use. It comes with the error reached, which is above the tolerance
+    /// if too many modes would be needed.
     ///
-    /// The score is checked by itself because its slices may cancel: for lambda = 1 and small r0 it is a second
-    /// difference along the axis, r0^2 of the kernel, to which high modes add more than to the kernel.
+    /// The score is checked by itself because its slices may cancel. For lambda = 1 and small r0 it is a second difference
+    /// along the axis, r0^2 of the kernel, to which high modes add more.
     pub fn for_tolerance(kernel: &RankingKernel, tolerance: f64) -> (Self, f64) {
         let mut most = if tolerance < 1e-7 { 128 } else { 64 };
         loop {
@@ -94,9 +94,8 @@ impl LiftedAxis {
         }
     }
 
-    /// Largest error of the series when cut after each mode, over radius sums and frequencies: of the kernel against
-    /// its definition, and a tenth of that of the score against the whole series, each relative to its largest
-    /// transform value.
+    /// Largest error of the series when cut after each mode, over radius sums and frequencies, relative to the largest
+    /// transform value: that of the kernel against its definition, or a tenth of the score's against the whole series.
     fn errors(&self, kernel: &RankingKernel) -> Vec<f64> {
         let cone = kernel.cone();
         let frequencies: Vec<f64> = (0..=16)
@@ -150,7 +149,7 @@ impl LiftedAxis {
                     }
                 }
             }
-            // What the kernel must meet leaves room for the weights of the slices, which the score has in it.
+            // The bound of the kernel leaves room for the weights of the slices, which the score contains.
             let share = if is_score { 0.1 } else { 1.0 };
             for (largest, error) in largest.iter_mut().zip(errors) {
                 *largest = largest.max(share * error / scale);

@@ -56,10 +56,7 @@ fn classes_and_modes_are_the_same_sum() {
     let kernel = kernel(3.0, 3.8);
     let axis = LiftedAxis::new(&kernel, 9);
     let (r, s) = (1.61, 1.83);
-    let classes = RadiusBasis::Classes {
-        receptor: vec![r],
-        ligand: vec![s],
-    };
+    let classes = RadiusBasis::Classes([vec![r], vec![s]]);
     let modes = RadiusBasis::Modes;
     for fold in [Quantity::Score, Quantity::Slice(0), Quantity::Slice(2)] {
         for w in [0.0, 0.05, 0.13, 0.22] {
@@ -67,14 +64,14 @@ fn classes_and_modes_are_the_same_sum() {
                 .coupling(&kernel, &axis, fold, (0, 0), 0.25)
                 .unwrap()
                 .value(w)[0];
-            let (na, nb) = modes.sizes(&axis);
+            let [na, nb] = [0, 1].map(|side| modes.size(&axis, side));
             let mut sum = 0.0;
             for a in 0..na {
                 for b in 0..nb {
                     if let Some(table) = modes.coupling(&kernel, &axis, fold, (a, b), 0.25) {
                         sum += table.value(w)[0]
-                            * modes.receptor_value(&axis, a, r)
-                            * modes.ligand_value(&axis, b, s);
+                            * modes.value(&axis, 0, a, r)
+                            * modes.value(&axis, 1, b, s);
                     }
                 }
             }

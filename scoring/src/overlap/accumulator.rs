@@ -3,8 +3,9 @@
 use super::pair::{PairOverlap, meet};
 use super::pair_table::Place;
 use crate::se3::Pose;
+use crate::vectorized::with_simd;
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 use std::ops::AddAssign;
 
 /// Pairs that are handled together.
@@ -46,8 +47,7 @@ impl AddAssign for Overlap {
 
 /// A running sum over pairs of balls, all in the receptor's frame. It allocates nothing.
 ///
-/// Pairs that meet wait until there are eight, which are then summed together. The same pairs in the same order give
-/// the same bits, whether they come one by one or by leaves.
+/// Pairs that meet are summed in eights. The same pairs in the same order give the same bits, one by one or by leaves.
 #[derive(Clone, Debug)]
 pub struct Accumulator<'a> {
     kernel: &'a PairOverlap,
@@ -88,22 +88,18 @@ impl<'a> Accumulator<'a> {
         self.sum
     }
 
-    /// Adds a sum made elsewhere about the same point.
-    pub fn merge(&mut self, other: Overlap) {
-        self.sum += other;
-    }
-
     fn flush(&mut self) {
-        self.sum += Arch::new().dispatch(Flush {
-            kernel: self.kernel,
-            batch: &self.waiting,
-        });
+        let (kernel, batch) = (self.kernel, &self.waiting);
+        self.sum += with_simd!(
+            <'a>(kernel: &'a PairOverlap, batch: &'a Batch) -> Overlap,
+            |simd| batch.sum(simd, kernel)
+        );
         self.waiting.count = 0;
     }
 }
 
 /// Up to eight pairs that meet.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 struct Batch {
     /// Of B's ball from A's.
     arms: [Lane; 3],
@@ -113,20 +109,6 @@ struct Batch {
     radii: [Lane; 2],
     weights: Lane,
     count: usize,
-}
-
-impl Default for Batch {
-    fn default() -> Self {
-        let zero = [0.0; LANES];
-        Self {
-            arms: [zero; 3],
-            levers: [zero; 3],
-            squares: zero,
-            radii: [[1.0; LANES]; 2],
-            weights: zero,
-            count: 0,
-        }
-    }
 }
 
 impl Batch {
@@ -150,35 +132,25 @@ impl Batch {
         self.count += usize::from(meets);
         meets
     }
-}
 
-/// The sum over a batch.
-struct Flush<'a> {
-    kernel: &'a PairOverlap,
-    batch: &'a Batch,
-}
-
-impl WithSimd for Flush<'_> {
-    type Output = Overlap;
-
+    /// The sum over the pairs.
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Overlap {
-        let Self { kernel, batch } = self;
-        let (arms, levers) = (&batch.arms, &batch.levers);
+    fn sum<S: Simd>(&self, simd: S, kernel: &PairOverlap) -> Overlap {
+        let (arms, levers) = (&self.arms, &self.levers);
         let zero = [0.0; LANES];
         let (mut small, mut large) = (zero, zero);
         let (mut ratios, mut scaled, mut roots, mut rests) = (zero, zero, zero, zero);
         for lane in 0..LANES {
-            let [r, s] = [batch.radii[0][lane], batch.radii[1][lane]];
+            let [r, s] = [self.radii[0][lane], self.radii[1][lane]];
             (small[lane], large[lane]) = (r.min(s), r.max(s));
-            let place = Place::new(small[lane], large[lane], batch.squares[lane]);
+            let place = Place::new(small[lane], large[lane], self.squares[lane]);
             ratios[lane] = place.ratio;
             scaled[lane] = place.square;
             roots[lane] = place.root;
             rests[lane] = place.rest;
         }
         let mut sum = Overlap::default();
-        for lane in 0..batch.count.min(LANES) {
+        for lane in 0..self.count.min(LANES) {
             let place = Place {
                 ratio: ratios[lane],
                 square: scaled[lane],
@@ -186,8 +158,8 @@ impl WithSimd for Flush<'_> {
                 rest: rests[lane],
             };
             let radii = [small[lane], large[lane]];
-            let [value, slope] = kernel.placed(simd, radii, batch.squares[lane], &place);
-            let weight = batch.weights[lane];
+            let [value, slope] = kernel.placed(simd, radii, self.squares[lane], &place);
+            let weight = self.weights[lane];
             let push = -2.0 * weight * slope;
             let (x, y, z) = (
                 push * arms[0][lane],
@@ -203,7 +175,7 @@ impl WithSimd for Flush<'_> {
             sum.torque[1] += w * x - u * z;
             sum.torque[2] += u * y - v * x;
         }
-        sum.pairs = batch.count as u64;
+        sum.pairs = self.count as u64;
         sum
     }
 }
@@ -218,36 +190,9 @@ pub fn pairs_nanoseconds(pairs: u64) -> f64 {
     PAIR * pairs as f64
 }
 
-/// Overlap of body A with body B moved by `pose`, over the pairs (ball of A, ball of B) given; pairs that do not meet
-/// add nothing. Torque about `about`, in A's frame. Indices beyond the slices are left out.
+/// Overlap of body A with body B moved by `pose`, the torque about `about`, in A's frame: the plain double sum.
 ///
-/// B&I eq. 50 with the product kernel, as a sum over pairs: exact up to [`PairOverlap::error`].
-pub fn overlap_of_pairs(
-    kernel: &PairOverlap,
-    a: &[WeightedBall],
-    b: &[WeightedBall],
-    pose: &Pose,
-    about: [f64; 3],
-    pairs: impl IntoIterator<Item = (usize, usize)>,
-) -> Overlap {
-    let rotation = pose.rotation.to_rotation_matrix();
-    let mut sum = Accumulator::new(kernel, about);
-    for (i, j) in pairs {
-        if let (Some(a), Some(b)) = (a.get(i), b.get(j)) {
-            let center = rotation * Vector3::from(b.center) + pose.translation;
-            sum.add(
-                a,
-                &WeightedBall {
-                    center: center.into(),
-                    ..*b
-                },
-            );
-        }
-    }
-    sum.sum()
-}
-
-/// Overlap over all pairs of two ball sets: the plain double sum, for small sets and as a reference.
+/// B&I eq. 50 with the product kernel, exact up to [`PairOverlap::error`].
 pub fn overlap_of_all(
     kernel: &PairOverlap,
     a: &[WeightedBall],
@@ -255,6 +200,14 @@ pub fn overlap_of_all(
     pose: &Pose,
     about: [f64; 3],
 ) -> Overlap {
-    let pairs = (0..b.len()).flat_map(|j| (0..a.len()).map(move |i| (i, j)));
-    overlap_of_pairs(kernel, a, b, pose, about, pairs)
+    let rotation = pose.rotation.to_rotation_matrix();
+    let mut sum = Accumulator::new(kernel, about);
+    for ball in b {
+        let center = (rotation * Vector3::from(ball.center) + pose.translation).into();
+        let moved = WeightedBall { center, ..*ball };
+        for ball in a {
+            sum.add(ball, &moved);
+        }
+    }
+    sum.sum()
 }

@@ -4,13 +4,13 @@
 //! body's weighted bumps. It is B&I eq. 50 with the product kernel ([`crate::kernel::product`]): an integral over
 //! space, so that balls of any size count by volume. Energies are volumes, in the cube of the balls' unit.
 //!
-//! - Pairs: [`PairOverlap`] is the kernel, [`Accumulator`] the sum that a tree traversal feeds, [`overlap_of_pairs`] the
-//!   sum over a list.
+//! - Pairs: [`PairOverlap`] is the kernel, [`Accumulator`] the sum that a tree traversal feeds, [`overlap_of_all`] the
+//!   sum over all pairs.
 //! - Modes: [`OverlapModes`] sums the lowest Fourier modes of both bodies, with a bound on the rest that can certify a
 //!   hit; [`OverlapModes::start`] does so block by block, until a deadline or a certified hit.
 //!
-//! [`pairs_nanoseconds`] and [`OverlapModes::nanoseconds`] say which is expected to cost less. Pairs are exact and cost
-//! what meets; modes cost the same at every pose, and a hit of deep bodies shows after a hundred of them.
+//! [`pairs_nanoseconds`] and [`OverlapModes::nanoseconds`] estimate the costs. Those of pairs grow with the pairs that
+//! meet; modes cost the same at every pose, and certify a hit of deep bodies after about a hundred.
 //!
 //! ```
 //! use knotdock_scoring::overlap::{Accumulator, OverlapModes, PairOverlap, WeightedBall, overlap_of_all};
@@ -39,11 +39,9 @@
 //! The force is -dE/dt on body B, the torque minus the slope of E by a turn of B about a chosen point, both in A's
 //! frame. Body A feels the opposite. A pose takes a ball of B at y to R y + t.
 //!
-//! # Contact
-//!
-//! Bumps vanish with all their derivatives at the end of their ball. The energy of balls that graze underflows: with an
-//! overlap of 1e-9 of the radius it is 0 in f64. So grazing contact is decided by d < r + s ([`meet`],
-//! [`Overlap::pairs`]). An energy above its error shows a hit; an energy of 0 shows nothing.
+//! Bumps vanish with all their derivatives at the end of their ball, so the energy of balls that graze underflows:
+//! grazing contact is decided by d < r + s ([`meet`], [`Overlap::pairs`]). An energy above its error shows a hit; an
+//! energy of 0 shows nothing.
 
 mod accumulator;
 mod modes;
@@ -53,8 +51,6 @@ mod quadrature;
 #[cfg(test)]
 mod tests;
 
-pub use accumulator::{
-    Accumulator, Overlap, WeightedBall, overlap_of_all, overlap_of_pairs, pairs_nanoseconds,
-};
-pub use modes::{ModesOverlap, ModesSum, ModesWorkspace, OverlapModes, OverlapModesError};
+pub use accumulator::{Accumulator, Overlap, WeightedBall, overlap_of_all, pairs_nanoseconds};
+pub use modes::{ModesOverlap, ModesSum, ModesWorkspace, OverlapModes};
 pub use pair::{PairOverlap, meet};

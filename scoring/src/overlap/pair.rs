@@ -3,29 +3,29 @@
 use super::pair_table::{PairTable, Place};
 use super::quadrature::Quadrature;
 use crate::kernel::product::lens_volume;
+use crate::vectorized::with_simd;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::numeric::bump::AlphaError;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 use std::f64::consts::PI;
 
 /// <psi_r, psi_s>(d) of any two radii, with its slope, for one exponent alpha.
 ///
-/// - alpha = 2: a table, built once in some 100 ms, and tens of nanoseconds a value with its slope. Errors are below 1e-8 of the
-///   value at d = 0, and those of the slope below 1e-5 of that over the larger radius, for every ratio of radii.
-/// - alpha from 2 to 4: the same table where it holds 5e-7 ([`Self::error`]), built in some 300 ms.
+/// - alpha = 2: a table, built in some 100 ms; tens of nanoseconds per value. Errors are below 1e-8 of the value at d = 0,
+///   and those of the slope below 1e-5 of that over the larger radius.
+/// - alpha from 2 to 4: the same table if it reaches 5e-7 ([`Self::error`]), built in some 300 ms.
 /// - alpha = infinity: the volume of the lens, in closed form.
-/// - Other exponents: quadrature, some microseconds a value, more the larger alpha is.
+/// - Other exponents: quadrature, some microseconds per value.
 ///
-/// The overlap is exactly 0 from d = r + s on. Just before that it underflows: two balls that overlap by 1e-9 of their
-/// radius have overlap 0 in f64, though they meet. Contact is decided by [`meet`], never by this value.
+/// The overlap is exactly 0 from d = r + s on, and underflows just before. So [`meet`] decides contact, never this value.
 #[derive(Clone, Debug)]
 pub struct PairOverlap {
     bump: Bump,
-    way: Way,
+    method: Method,
 }
 
 #[derive(Clone, Debug)]
-enum Way {
+enum Method {
     Sharp,
     Table(PairTable),
     Quadrature(Quadrature),
@@ -44,16 +44,16 @@ impl PairOverlap {
     /// [`AlphaError`] unless alpha > 0.
     pub fn new(alpha: f64) -> Result<Self, AlphaError> {
         let bump = Bump::new(alpha)?;
-        let way = if alpha.is_infinite() {
-            Way::Sharp
+        let method = if alpha.is_infinite() {
+            Method::Sharp
         } else {
             let quadrature = Quadrature::new(bump);
             match PairTable::new(bump, &quadrature) {
-                Some(table) => Way::Table(table),
-                None => Way::Quadrature(quadrature),
+                Some(table) => Method::Table(table),
+                None => Method::Quadrature(quadrature),
             }
         };
-        Ok(Self { bump, way })
+        Ok(Self { bump, method })
     }
 
     /// The bump.
@@ -64,31 +64,26 @@ impl PairOverlap {
     /// Error of a value as a share of that at d = 0: what the table's fit was measured to miss, else that of the
     /// quadrature.
     pub fn error(&self) -> f64 {
-        match &self.way {
-            Way::Sharp => 1e-15,
-            Way::Table(table) => table.error(),
-            Way::Quadrature(_) if self.bump.alpha() < 1.0 => 1e-5,
-            Way::Quadrature(_) if self.bump.alpha() < 2.0 => 1e-6,
-            Way::Quadrature(_) => 1e-9,
+        match &self.method {
+            Method::Sharp => 1e-15,
+            Method::Table(table) => table.error(),
+            Method::Quadrature(_) if self.bump.alpha() < 1.0 => 1e-5,
+            Method::Quadrature(_) if self.bump.alpha() < 2.0 => 1e-6,
+            Method::Quadrature(_) => 1e-9,
         }
     }
 
     /// Overlap and its slope by the distance, for radii r and s (above 0) at a distance of their centres.
     pub fn value_and_slope(&self, r: f64, s: f64, distance: f64) -> (f64, f64) {
-        let [value, by_square] = self.by_square(r, s, distance * distance);
+        let (kernel, radii, square) = (self, [r.min(s), r.max(s)], distance * distance);
+        let [value, by_square] = with_simd!(
+            <'a>(kernel: &'a PairOverlap, radii: [f64; 2], square: f64) -> [f64; 2],
+            |simd| kernel.placed(simd, radii, square, &Place::new(radii[0], radii[1], square))
+        );
         (value, 2.0 * distance * by_square)
     }
 
-    /// Overlap and its slope by the squared distance of the centres.
-    pub fn by_square(&self, r: f64, s: f64, square: f64) -> [f64; 2] {
-        Arch::new().dispatch(One {
-            kernel: self,
-            radii: [r.min(s), r.max(s)],
-            square,
-        })
-    }
-
-    /// [`Self::by_square`] of a pair whose place in the table is known.
+    /// Overlap and its slope by the squared distance, of a pair whose place in the table is known.
     #[inline(always)]
     pub(super) fn placed<S: Simd>(
         &self,
@@ -97,14 +92,14 @@ impl PairOverlap {
         square: f64,
         place: &Place,
     ) -> [f64; 2] {
-        match &self.way {
-            Way::Table(table) => {
+        match &self.method {
+            Method::Table(table) => {
                 let [value, slope] = table.value(simd, place);
                 let cube = small * small * small;
                 [cube * value, cube * slope / (small * small + large * large)]
             }
-            Way::Sharp => lens_and_slope(small, large, square),
-            Way::Quadrature(quadrature) => {
+            Method::Sharp => lens_and_slope(small, large, square),
+            Method::Quadrature(quadrature) => {
                 let (cube, unit) = (small * small * small, 1.0 / large);
                 let distance = square.sqrt() * unit;
                 let [value, slope] = quadrature.value_and_slope(place.ratio, distance);
@@ -114,28 +109,10 @@ impl PairOverlap {
     }
 }
 
-/// One pair.
-struct One<'a> {
-    kernel: &'a PairOverlap,
-    radii: [f64; 2],
-    square: f64,
-}
-
-impl WithSimd for One<'_> {
-    type Output = [f64; 2];
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Self::Output {
-        let [small, large] = self.radii;
-        let place = Place::new(small, large, self.square);
-        self.kernel.placed(simd, self.radii, self.square, &place)
-    }
-}
-
 /// Lens volume of balls of radii r and s, and its slope by the squared distance of their centres.
 ///
-/// The slope by the distance is -pi rho^2, rho the radius of the circle in which the spheres cross: 0 while one ball
-/// lies in the other. Equal balls at one place have a kink there, with slope 0 by symmetry.
+/// The slope by the distance is -pi rho^2, rho the radius of the circle in which the spheres cross: 0 if one ball is in
+/// the other or both coincide.
 #[inline(always)]
 pub(super) fn lens_and_slope(r: f64, s: f64, square: f64) -> [f64; 2] {
     let distance = square.sqrt();

@@ -38,7 +38,7 @@ pub(super) struct PairTable {
     error: f64,
 }
 
-/// Where a pair lies in the table.
+/// Place of a pair in the table.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct Place {
     /// k.
@@ -153,7 +153,7 @@ impl PairTable {
         let [sum, slope] = cell_at(simd, cell, u, v);
         let value = sum.max(0.0);
         let slope = (per_unit * inverse_half * slope).min(0.0);
-        // What is left of the noise where the kernel itself has underflowed ends without a step.
+        // The noise beyond the kernel's own underflow ends without a step.
         let share = (0.25 / self.end * place.rest).min(1.0);
         let fade = if share < 1.0 { share * share } else { 1.0 };
         [fade * value, fade * slope]

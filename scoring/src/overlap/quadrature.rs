@@ -25,7 +25,7 @@ const NEAR_CENTER: f64 = 1e-3;
 /// k is the ratio of the radii. M(u, d) is the mean of the larger bump over a sphere of radius u at distance d. The
 /// overlap is 4 pi times the integral over 0..1 of t^2 psi(t) M(k t, d).
 ///
-/// M is a difference of tail integrals, as in [`crate::kernel::ProductKernel::overlap`]. Where that difference would
+/// M is a difference of tail integrals, as in [`crate::kernel::ProductKernel::overlap`]. If that difference would
 /// cancel it is a Gauss sum.
 #[derive(Clone, Debug)]
 pub(super) struct Quadrature {

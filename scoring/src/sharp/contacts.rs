@@ -15,7 +15,7 @@ const NOWHERE: f32 = 1e4;
 /// Overlap in Å from which a pair adds its whole stiffness to the curvature.
 const FULL_STIFFNESS: f32 = 0.3;
 /// Keeps the distance of atoms in one place from zero, Å².
-const LEAST: f32 = 1e-6;
+const MIN_SQUARE: f32 = 1e-6;
 
 /// Positions of the receptor atoms of a block relative to the centre of the interface, Å.
 #[derive(Clone, Copy)]
@@ -40,7 +40,7 @@ impl PositionLanes {
     }
 }
 
-/// What distances of contact read of the receptor atoms of a block.
+/// Data of the receptor atoms of a block for distances of contact.
 pub(super) struct ContactLanes {
     /// Radii, Å.
     radii: Lanes,
@@ -81,7 +81,7 @@ impl ContactLanes {
     }
 }
 
-/// What sums read of a ligand atom.
+/// Data of a ligand atom for sums.
 #[derive(Clone, Copy)]
 pub(super) struct LigandAtom {
     /// Radius, Å.
@@ -98,7 +98,7 @@ impl LigandAtom {
     }
 }
 
-/// What blocks add up to for one ligand atom.
+/// Sums over blocks for one ligand atom.
 pub(super) struct AtomSums {
     pub contacts: f64,
     pub overlap: f64,
@@ -108,10 +108,10 @@ pub(super) struct AtomSums {
     pub curvature: Matrix3<f64>,
 }
 
-/// Sums over the listed blocks about a ligand atom at a place, with a stiffness in RT/Å².
+/// Sums over some blocks about a ligand atom at a place, with a stiffness in RT/Å².
 #[inline(always)]
 pub(super) fn atom_sums(
-    (listed, positions, contacts): (&[u32], &[PositionLanes], &[ContactLanes]),
+    (numbers, positions, contacts): (&[u32], &[PositionLanes], &[ContactLanes]),
     atom: LigandAtom,
     at: &Vector3<f64>,
     stiffness: f64,
@@ -121,11 +121,11 @@ pub(super) fn atom_sums(
     let slope = 4.0 * DEPTH as f32 * inverse;
     let mut sums = [[0.0f32; LANES]; 11];
     let kind = usize::from(atom.kind.0 & 3);
-    for &index in listed {
+    for &index in numbers {
         let (Some(PositionLanes([x, y, z])), Some(contact)) =
             (positions.get(index as usize), contacts.get(index as usize))
         else {
-            debug_assert!(false, "a block that is not there is listed");
+            debug_assert!(false, "there is no block of this number");
             continue;
         };
         let (radii, most) = (&contact.radii, &contact.most[kind]);
@@ -133,8 +133,9 @@ pub(super) fn atom_sums(
         let dx = each(|lane| at.x - x[lane]);
         let dy = each(|lane| at.y - y[lane]);
         let dz = each(|lane| at.z - z[lane]);
-        let square =
-            each(|lane| dx[lane] * dx[lane] + dy[lane] * dy[lane] + dz[lane] * dz[lane] + LEAST);
+        let square = each(|lane| {
+            dx[lane] * dx[lane] + dy[lane] * dy[lane] + dz[lane] * dz[lane] + MIN_SQUARE
+        });
         let distance = each(|lane| square[lane].sqrt());
         let one = each(|lane| 1.0 / distance[lane]);
         let sum = each(|lane| radii[lane] + atom.radius);

@@ -9,17 +9,17 @@ use nalgebra::{Matrix6, Vector3, Vector6};
 /// Rounds of a descent: stiffness in RT/Å², and most steps. The last has the stiffness of the energy.
 const ROUNDS: [(f64, usize); 3] = [(0.2, 10), (1.2, 10), (STIFFNESS, 25)];
 /// Longest step, Å: the root of the squares of the shift and of the arc at the interface's radius.
-const LONGEST: f64 = 0.8;
+const MAX_STEP: f64 = 0.8;
 /// Damping of a first step in RT/Å²: a part for each contact and a constant, for the curvature of contacts, which has
 /// either sign.
 const DAMPING: [f64; 2] = [0.02, 2.0];
-/// What damping is divided by after a step downhill, and multiplied by after one uphill.
+/// Divisor of the damping after a step downhill, and factor after one uphill.
 const EASED: f64 = 3.0;
 const RAISED: f64 = 5.0;
 /// A round ends with a step downhill of less than this, in RT and Å.
 const SETTLED: (f64, f64) = (0.01, 0.02);
 /// A round ends with a step uphill that is shorter than this, Å.
-const SHORTEST: f64 = 0.005;
+const MIN_STEP: f64 = 0.005;
 /// Most quasi-Newton steps to the minimum, and halvings of a step.
 const POLISHING: usize = 40;
 const HALVINGS: usize = 6;
@@ -30,7 +30,7 @@ const CONVERGED: f64 = 1e-3;
 /// Distance of the other starts about a pose, Å: about what a search's rotations and grid leave open.
 const AROUND: f64 = 1.5;
 
-/// Where a descent came to rest.
+/// The end of a descent.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Optimum {
     /// The pose.
@@ -44,7 +44,7 @@ impl SharpFit {
     pub fn descend(&self, pose: &Pose, list: &mut PairList) -> Option<Optimum> {
         let touches = list.begin(self, pose);
         touches.then(|| {
-            let at = self.rest(&Move::none(), list);
+            let at = self.rest(&Move::default(), list);
             self.optimum(pose, &at, list)
         })
     }
@@ -55,7 +55,7 @@ impl SharpFit {
         if !list.begin(self, pose) {
             return None;
         }
-        let first = self.rest(&Move::none(), list);
+        let first = self.rest(&Move::default(), list);
         let mut best = first;
         let mut least = list.slope(self, STIFFNESS, &best).energy.total();
         let axes = list.axes;
@@ -68,7 +68,7 @@ impl SharpFit {
                     step.fixed_rows_mut::<3>(0)
                         .copy_from(&(sign * shift * axis));
                     step.fixed_rows_mut::<3>(3).copy_from(&(sign * turn * axis));
-                    let other = self.rest(&Move::none().then(&step), list);
+                    let other = self.rest(&Move::default().then(&step), list);
                     let energy = list.slope(self, STIFFNESS, &other).energy.total();
                     if energy < least {
                         (best, least) = (other, energy);
@@ -94,7 +94,7 @@ impl SharpFit {
         at
     }
 
-    /// The optimum that a move of a pose lies near.
+    /// The optimum near a move of a pose.
     fn optimum(&self, pose: &Pose, near: &Move, list: &mut PairList) -> Optimum {
         let at = self.converged(near, list);
         let moved = self.moved(pose, &at, list);
@@ -133,7 +133,7 @@ impl SharpFit {
                 }
             } else {
                 damping *= RAISED;
-                if length < SHORTEST {
+                if length < MIN_STEP {
                     break;
                 }
             }
@@ -141,7 +141,7 @@ impl SharpFit {
         at
     }
 
-    /// The minimum that a move lies near: quasi-Newton steps (Broyden, Fletcher, Goldfarb and Shanno; Nocedal & Wright,
+    /// The minimum near a move: quasi-Newton steps (Broyden, Fletcher, Goldfarb and Shanno; Nocedal & Wright,
     /// Numerical Optimization, 2nd ed., eq. 6.17), each halved until it goes downhill.
     fn converged(&self, from: &Move, list: &mut PairList) -> Move {
         let mut at = *from;
@@ -155,7 +155,7 @@ impl SharpFit {
         let mut gradient = here.by_step.gradient.component_mul(&scale);
         for _ in 0..POLISHING {
             let mut step = -inverse * gradient;
-            step /= (1.0 + (step.norm() / LONGEST).powi(2)).sqrt();
+            step /= (1.0 + (step.norm() / MAX_STEP).powi(2)).sqrt();
             let value = here.energy.total();
             let expected = -gradient.dot(&step);
             if expected.is_nan() || expected < CONVERGED {
@@ -199,14 +199,14 @@ impl SharpFit {
 }
 
 impl Slope {
-    /// A step downhill of at most [`LONGEST`], its rotation as an arc in Å; `None` if a number is not finite.
+    /// A step downhill of at most [`MAX_STEP`], its rotation as an arc in Å; `None` if a number is not finite.
     fn step(&self, scale: &Vector6<f64>, damping: f64) -> Option<Vector6<f64>> {
         let step = -self
             .damped(scale, damping)
             .cholesky()?
             .solve(&self.by_step.gradient.component_mul(scale));
         let length = step.norm();
-        Some(step / (1.0 + (length / LONGEST).powi(2)).sqrt())
+        Some(step / (1.0 + (length / MAX_STEP).powi(2)).sqrt())
     }
 
     /// The curvature with its damping, rotations as arcs in Å.

@@ -107,7 +107,7 @@ pub(super) fn well(beyond: f64, range: f64) -> (f64, f64) {
 }
 
 /// Weight of the angle between an atom's direction and a bond, by its cosine, and the derivative: 0 from a right angle
-/// on, 1 below 60 degrees, and 1 of an atom without a direction.
+/// on, 1 below 60 degrees and for an atom without a direction.
 pub(super) fn angle_weight(direction: &Vector3<f64>, cosine: f64) -> (f64, f64) {
     if direction.norm_squared() == 0.0 {
         return (1.0, 0.0);
@@ -118,19 +118,10 @@ pub(super) fn angle_weight(direction: &Vector3<f64>, cosine: f64) -> (f64, f64) 
 
 /// Energy of a move with its derivatives by a further step. The curvature is that of overlaps along the lines between
 /// their atoms: positive semidefinite.
+#[derive(Default)]
 pub(super) struct Slope {
     pub energy: Energy,
     pub by_step: Derivatives,
-}
-
-impl Slope {
-    /// Slope of nothing.
-    pub fn zero() -> Self {
-        Self {
-            energy: Energy::default(),
-            by_step: Derivatives::zero(),
-        }
-    }
 }
 
 /// A donor and an acceptor that a move may bring together.

@@ -1,7 +1,7 @@
 //! The sharp fit: the energy of two rigid bodies at atomic resolution, and its optima near a pose.
 //!
-//! The score that a search ranks by is soft: it forgives what unbound surfaces get wrong. Where the two files fit as
-//! they are (a known complex that is docked again), an exact fit is strong evidence, and it shows at atomic resolution alone.
+//! The score that a search ranks by is soft: it forgives errors of unbound surfaces. If the two files fit as they are (a
+//! known complex that is docked again), an exact fit is strong evidence, and it shows at atomic resolution alone.
 //!
 //! # Energy
 //!
@@ -18,17 +18,16 @@
 //!
 //! # Descents
 //!
-//! [`SharpFit::descend`] is a Levenberg-Marquardt descent over the six rigid degrees of freedom. Its stiffness against
-//! overlap grows over three rounds, so that first the whole interface finds its place and then its atoms do.
-//! Quasi-Newton steps then lead to the minimum.
-//! [`SharpFit::best_near`] starts from a pose and from twelve places about it.
+//! [`SharpFit::descend`] is a Levenberg-Marquardt descent over the six rigid degrees of freedom, whose stiffness against
+//! overlap grows over three rounds. Quasi-Newton steps then lead to the minimum. [`SharpFit::best_near`] starts from a
+//! pose and from twelve places about it.
 //!
 //! Positions are relative to the bodies' centres. Lengths are in Å, energies in RT. Lower is better.
 
 mod contacts;
 mod descent;
+mod distance_floors;
 mod energy;
-mod nearness;
 mod pair_list;
 #[cfg(test)]
 mod tests;
@@ -37,16 +36,13 @@ pub use descent::Optimum;
 pub use energy::Energy;
 pub use pair_list::PairList;
 
-use crate::blocks::{Blocks, Near};
-use crate::rigid_move::center;
+use crate::blocks::{Blocks, NearPoints};
+use crate::rigid_move::{center, heavy_atoms};
 use crate::se3::Pose;
 use contacts::{ContactLanes, LANES};
+use distance_floors::DistanceFloors;
 use knotdock_structures::{Knots, PolarAtom};
 use nalgebra::{Matrix3, Vector3};
-use nearness::Nearness;
-
-/// Largest radius in Å of a hydrogen, whose bonds hold it inside another atom: it does not count.
-const HYDROGEN: f64 = 1.15;
 
 /// A heavy atom of a body.
 #[derive(Clone, Copy, Debug)]
@@ -70,7 +66,7 @@ pub struct SharpFit {
     polar: Blocks,
     /// Their places among all, in the order of their blocks.
     polar_sites: Vec<usize>,
-    near: Nearness,
+    near: DistanceFloors,
     receptor_center: Vector3<f64>,
     ligand: Vec<Site>,
     ligand_center: Vector3<f64>,
@@ -79,7 +75,7 @@ pub struct SharpFit {
 }
 
 impl SharpFit {
-    /// Prepares receptor and ligand with what their atoms may do in hydrogen bonds: one label a knot, or none.
+    /// Prepares receptor and ligand with the roles of their atoms in hydrogen bonds: one label per knot, or none.
     pub fn new([receptor, ligand]: [&Knots; 2], polar: [&[PolarAtom]; 2]) -> Self {
         let (receptor_center, ligand_center) = (center(receptor), center(ligand));
         let sites_of = sites(receptor, polar[0], receptor_center);
@@ -108,7 +104,7 @@ impl SharpFit {
             polar_sites: polar_blocks.arranged(|index| polar[index]),
             polar: polar_blocks,
             receptor: blocks,
-            near: Nearness::new(sites_of.iter().map(|site| site.position)),
+            near: DistanceFloors::new(sites_of.iter().map(|site| site.position)),
             receptor_center,
             sites: sites_of,
             ligand,
@@ -116,11 +112,11 @@ impl SharpFit {
         }
     }
 
-    /// The energy of a pose as it stands: the plain double sum over pairs of atoms in f64.
+    /// The energy of a pose: the plain double sum over pairs of atoms in f64.
     pub fn energy(&self, pose: &Pose) -> Energy {
         let (matrix, place) = self.placed(pose);
         let mut energy = Energy::default();
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         for site in &self.ligand {
             let at = matrix * site.position + place;
             let reach = self.reach(site);
@@ -156,11 +152,9 @@ impl SharpFit {
 
 /// The heavy atoms of a body relative to `middle`.
 fn sites(knots: &Knots, polar: &[PolarAtom], middle: Vector3<f64>) -> Vec<Site> {
-    let atoms = knots.centers.iter().zip(&knots.radii).enumerate();
-    let heavy = atoms.filter(|(_, (_, radius))| **radius > HYDROGEN);
-    heavy
-        .map(|(index, (&x, &radius))| Site {
-            position: Vector3::from(x) - middle,
+    heavy_atoms(knots, middle)
+        .map(|(index, position, radius)| Site {
+            position,
             radius,
             polar: polar.get(index).copied().unwrap_or_default(),
             charge: knots.charges.get(index).copied().unwrap_or(0.0),

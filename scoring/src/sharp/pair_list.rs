@@ -3,10 +3,10 @@
 use super::contacts::{LigandAtom, PositionLanes, atom_sums};
 use super::energy::{BOND_REACH, BondPair, Slope, bond_count};
 use super::{SharpFit, Site};
-use crate::blocks::Near;
+use crate::blocks::NearPoints;
 use crate::rigid_move::Move;
 use crate::se3::Pose;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use nalgebra::{Matrix3, Vector3};
 
 /// Shift in Å of a move and its angle in radians up to which a list holds every pair within reach.
@@ -34,7 +34,7 @@ pub struct PairList {
     blocks: Vec<u32>,
     /// Positions of the receptor's atoms by block.
     positions: Vec<PositionLanes>,
-    near: Near,
+    near: NearPoints,
     bonds: Vec<BondPair>,
     /// Ligand atoms that a descent may bring near the receptor: index and arm.
     reachable: Vec<(usize, Vector3<f64>)>,
@@ -176,10 +176,7 @@ impl PairList {
     /// Energy with its slope at a move over the pairs of the list; clashes are not counted.
     pub(super) fn slope(&self, fit: &SharpFit, stiffness: f64, at: &Move) -> Slope {
         let turn = *at.turn.to_rotation_matrix().matrix();
-        let mut slope = vectorized(
-            #[inline(always)]
-            || self.contacts(fit, stiffness, &turn, &at.shift),
-        );
+        let mut slope = vectorize!(self.contacts(fit, stiffness, &turn, &at.shift));
         for bond in &self.bonds {
             bond.add(&turn, at, &mut slope);
         }
@@ -195,14 +192,14 @@ impl PairList {
         turn: &Matrix3<f64>,
         shift: &Vector3<f64>,
     ) -> Slope {
-        let mut slope = Slope::zero();
+        let mut slope = Slope::default();
         let mut from = 0;
         for atom in &self.mobile {
-            let listed = &self.blocks[from..atom.end];
+            let numbers = &self.blocks[from..atom.end];
             from = atom.end;
             let arm = turn * atom.arm;
             let sums = atom_sums(
-                (listed, &self.positions, &fit.contacts),
+                (numbers, &self.positions, &fit.contacts),
                 atom.atom,
                 &(arm + shift),
                 stiffness,

@@ -115,7 +115,7 @@ fn pairs_of_a_list_add_up_to_the_double_sum() {
             assert_eq!(fit.energy(&pose).overlap, 0.0);
             continue;
         }
-        let mut at = Move::none();
+        let mut at = Move::default();
         for step in 0..6 {
             list.renew(&fit, &at);
             let in_list = list.slope(&fit, STIFFNESS, &at).energy;
@@ -143,7 +143,7 @@ fn slopes_are_those_of_the_energy() {
     let mut seen = 0;
     for pose in poses(0.0).skip(4).step_by(3).take(8) {
         assert!(list.begin(&fit, &pose));
-        let at = Move::none().then(&Vector6::new(0.3, -0.2, 0.1, 0.02, 0.05, -0.03));
+        let at = Move::default().then(&Vector6::new(0.3, -0.2, 0.1, 0.02, 0.05, -0.03));
         list.renew(&fit, &at);
         let slope = list.slope(&fit, STIFFNESS, &at);
         let energy =

@@ -4,11 +4,10 @@
 //! the axis' direction, t the translation and p the axis' point nearest the origin. Then u.t = 0, t = p - R p and p =
 //! (t + cot(pi / n) u x t) / 2.
 //!
-//! The same pose takes the first copy to the second and any copy to the next, so its score is that of each pair of
-//! neighbours.
+//! Its score is that of each pair of neighbours.
 //!
-//! Where the molecule is moved by C under the axis, or the axis by C over the molecule, M becomes C M C^-1. This varies
-//! a ring and keeps it a ring.
+//! If the molecule is moved by C under the axis, or the axis by C over the molecule, M becomes C M C^-1. This varies a
+//! ring and keeps it a ring.
 //!
 //! Dihedral symmetry Dn is a ring of two whose molecule is itself a ring of n. A half-turn about an axis that crosses
 //! the ring's own at a right angle ([`RingAxis`]) lays one ring face to face with the other.
@@ -20,19 +19,20 @@ use std::str::FromStr;
 
 use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
+use knotdock_structures::Error;
 use nalgebra::{Unit, UnitQuaternion, Vector3};
 pub use ring_axis::{NotARing, RingAxis};
 use serde::{Deserialize, Deserializer, Serialize, Serializer};
 
 /// Most copies in a ring: proteins with more are rare, and their neighbours are all but parallel.
-const MOST: usize = 24;
+const MAX_COPIES: usize = 24;
 /// Most copies in each of two rings.
 const MAX_FOLDS: usize = 12;
 /// Largest departure of a pose from a ring's: in radians of its angle, and in Å of its slide along the axis. This share
 /// of its translation is added, which is long where the file's origin is far.
 const OFF: f64 = 1e-6;
 
-/// How copies of a molecule stand to each other: Cn, n of them about an axis, or Dn, two rings of n face to face.
+/// Symmetry of the copies of a molecule: Cn, n of them about an axis, or Dn, two rings of n face to face.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Symmetry {
     /// Molecules that a pose relates: of Dn the two rings.
@@ -41,22 +41,21 @@ pub struct Symmetry {
     folds: usize,
 }
 
-/// A text that is not C2, C3 and so on.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("'{0}' is no symmetry that is known: C2 to C{MOST} and D2 to D{MAX_FOLDS} are")]
-pub struct SymmetryError(String);
-
 impl FromStr for Symmetry {
-    type Err = SymmetryError;
+    type Err = Error;
 
-    fn from_str(text: &str) -> Result<Self, SymmetryError> {
-        let wrong = || SymmetryError(text.to_owned());
+    fn from_str(text: &str) -> Result<Self, Error> {
+        let wrong = || {
+            Error::input(format!(
+                "'{text}' is no symmetry that is known: C2 to C{MAX_COPIES} and D2 to D{MAX_FOLDS} are"
+            ))
+        };
         let (kind, digits) = text.split_at_checked(1).ok_or_else(wrong)?;
         let count = (digits.bytes().all(|byte| byte.is_ascii_digit()))
             .then(|| digits.parse().ok())
             .flatten();
         match (kind, count) {
-            ("C" | "c", Some(copies @ 2..=MOST)) => Ok(Self { copies, folds: 1 }),
+            ("C" | "c", Some(copies @ 2..=MAX_COPIES)) => Ok(Self { copies, folds: 1 }),
             ("D" | "d", Some(folds @ 2..=MAX_FOLDS)) => Ok(Self { copies: 2, folds }),
             _ => Err(wrong()),
         }
@@ -91,7 +90,7 @@ impl Symmetry {
         (self.folds > 1).then_some(self.folds)
     }
 
-    /// Number of copies of what is docked: n of Cn, of Dn the two rings.
+    /// Number of copies of the docked molecule: n for Cn, the two rings for Dn.
     pub fn copies(self) -> usize {
         self.copies
     }
@@ -106,7 +105,7 @@ impl Symmetry {
         UnitQuaternion::from_axis_angle(axis, self.angle())
     }
 
-    /// The ring's pose about the same axis that lies nearest: without the slide along it. `pose` turns by the ring's
+    /// The nearest pose of a ring about the same axis: without the slide along it. `pose` turns by the ring's
     /// angle, rounding aside.
     pub fn nearest(self, pose: &Pose) -> Pose {
         let axis = direction(pose);
@@ -123,7 +122,7 @@ impl Symmetry {
         let t = pose.translation;
         let turn = pose.rotation.angle_to(&self.rotation(&axis));
         let slide = axis.dot(&t).abs();
-        // What does not turn at all has no axis, and angles to it are no numbers.
+        // A pose without rotation has no axis, and angles to it are no numbers.
         let fits = turn <= OFF && slide <= OFF * (1.0 + t.norm());
         fits.then(|| self.images(pose).collect())
     }
@@ -176,7 +175,7 @@ pub fn conjugated(
     motion.after(pose).after(&motion.inverse())
 }
 
-/// What a score gains by small shifts (per Å) and turns about `center` (per radian) of [`conjugated`], given its
+/// Gradient of a score by small shifts (per Å) and turns about `center` (per radian) of [`conjugated`], given its
 /// gradient at `pose` by the ligand's own.
 pub fn conjugated_gradient(
     pose: &Pose,
@@ -244,7 +243,7 @@ mod tests {
     /// Each image is the pose once more, and once around all is where it was.
     #[test]
     fn images_are_powers_and_close() {
-        for copies in 2..=MOST {
+        for copies in 2..=MAX_COPIES {
             let symmetry = Symmetry { copies, folds: 1 };
             let pose = some(symmetry);
             let images = symmetry.ring(&pose).unwrap();
@@ -258,11 +257,10 @@ mod tests {
         }
     }
 
-    /// Where the file's origin lies on the axis nothing moves it, and where it lies far off it moves far: either is a
-    /// ring, as printed too.
+    /// A file's origin on the axis does not move, and one far off it moves far: either is a ring, as printed too.
     #[test]
     fn rings_are_known_wherever_the_origin_lies() {
-        for copies in [2, 3, 7, MOST] {
+        for copies in [2, 3, 7, MAX_COPIES] {
             let symmetry = Symmetry { copies, folds: 1 };
             for scale in [0.0, 1e-12, 1e-6, 1.0, 1e6] {
                 let point = scale * Vector3::new(1.0, 0.7, -0.4);
@@ -278,7 +276,7 @@ mod tests {
     /// All pairs of copies are counted once: each pair of neighbours with its share of the pairs beyond.
     #[test]
     fn pairs_beyond_neighbours_are_counted_once() {
-        for copies in 2..=MOST {
+        for copies in 2..=MAX_COPIES {
             let symmetry = Symmetry { copies, folds: 1 };
             let beyond: f64 = symmetry
                 .beyond(&some(symmetry))

@@ -1,7 +1,7 @@
 //! The axis of a ring that a file holds, and the half turns about axes across it that lay two such rings face to face
 //! (Dn).
 //!
-//! The mean of an atom's places in all copies of an exact ring lies on its axis, so the axis is the line through the
+//! The mean of an atom's places in all copies of an exact ring is on its axis, so the axis is the line through the
 //! means of all atoms. An axis across it has a direction u at a right angle to the ring's and meets it at a height h.
 //! These are two degrees of freedom; moves along and about the ring's axis span them.
 
@@ -128,7 +128,7 @@ impl RingAxis {
         Pose::about(rotation, point, point)
     }
 
-    /// The half turn about an axis across the ring's that lies nearest to a pose that is about half a turn.
+    /// The half turn about an axis across the ring's that is nearest to a pose of about half a turn.
     pub fn nearest(&self, pose: &Pose) -> Pose {
         let about = direction(pose);
         let across = Unit::new_normalize(*about - about.dot(&self.direction) * *self.direction);
@@ -273,7 +273,7 @@ mod tests {
         assert!(difference(&axis.nearest(&off), &higher) < 1e-10);
     }
 
-    /// Moves leave a half turn across the axis, and what they gain is what the gradient says.
+    /// Moves leave a half turn across the axis, and the gradient is their gain.
     #[test]
     fn moves_stay_across_and_the_gradient_is_theirs() {
         let axis = RingAxis::of(&ring(3, 20.0).0).unwrap();

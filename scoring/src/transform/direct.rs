@@ -3,12 +3,12 @@
 //! f_k = sum_j c_j exp(-2 pi i k.x_j) for several sets of weights c on the same points. Phases are products of three
 //! tables, one an axis (B&I's "cascade" NDFT), so that a point and a mode cost one complex multiplication: O(points x
 //! modes), in vector lanes. For few modes or few points it needs less time than [`super::nufft`], whose grid has a
-//! price of its own.
+//! price too.
 //!
 //! Conventions are those of [`super::ndft::forward`], against which it is tested: points in units of the period, modes
 //! from -floor(n/2) on each axis, row-major, the last axis fastest.
 
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use num_complex::Complex64;
 use std::f64::consts::PI;
 
@@ -76,10 +76,7 @@ pub fn forward(
         let first = block * LANES * GROUPS;
         for (weights, output) in fields.iter().zip(&mut output) {
             let weights = gathered(&weights[first..first + points.len()]);
-            vectorized(
-                #[inline(always)]
-                || accumulate(&weights, &tables, modes, output),
-            );
+            vectorize!(accumulate(&weights, &tables, modes, output));
         }
     }
     output
@@ -99,7 +96,7 @@ fn gathered(weights: &[Complex64]) -> [Lane; GROUPS] {
 /// exp(-2 pi i k x) of a block's points along an axis: \[k\]\[group\].
 fn tabulate(points: &[[f64; 3]], axis: usize, modes: usize, table: &mut [Lane]) {
     for (index, point) in points.iter().enumerate() {
-        // ReceptorSpectra first, so that a point many periods away keeps the digits that it has.
+        // Whole periods go first, so that a point many periods away keeps the digits that it has.
         let x = point[axis] - point[axis].round();
         for k in 0..modes {
             let wave = Complex64::cis(-2.0 * PI * (k as f64 - (modes / 2) as f64) * x);

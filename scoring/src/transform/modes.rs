@@ -35,18 +35,13 @@ pub struct Column {
 
 impl Column {
     /// Number of modes in the column.
-    pub fn len(&self) -> usize {
+    pub fn count(&self) -> usize {
         2 * self.kx_max as usize + 1
-    }
-
-    /// A column is never empty; here for completeness.
-    pub fn is_empty(&self) -> bool {
-        false
     }
 }
 
 impl ModeSet {
-    /// The modes of a box that lie in the ball |w| < `cut`.
+    /// The modes of a box in the ball |w| < `cut`.
     pub fn new(size: [usize; 3], lengths: [f64; 3], cut: f64) -> Self {
         let limit = |axis: usize| (size[axis] as i32 - 1) / 2;
         let mut columns = Vec::new();
@@ -70,7 +65,7 @@ impl ModeSet {
                     kx_max,
                     start: count,
                 };
-                count += column.len();
+                count += column.count();
                 columns.push(column);
             }
             if columns.len() == first {
@@ -165,7 +160,7 @@ mod tests {
         }
         assert_eq!(seen, expected);
         assert_eq!(
-            modes.columns.last().map(|c| c.start + c.len()),
+            modes.columns.last().map(|c| c.start + c.count()),
             Some(modes.count)
         );
     }

@@ -73,7 +73,7 @@ impl<T: Real> RealFft3d<T> {
     /// Grid to spectrum. The grid's values are lost.
     ///
     /// # Panics
-    /// Where grid, spectrum or workspace belong to another size.
+    /// If grid, spectrum or workspace belong to another size.
     pub fn forward(
         &self,
         grid: &mut [T],
@@ -109,7 +109,7 @@ impl<T: Real> RealFft3d<T> {
     /// Spectrum of a real grid to the grid, times the number of points. The spectrum's values are lost.
     ///
     /// # Panics
-    /// Where grid, spectrum or workspace belong to another size.
+    /// If grid, spectrum or workspace belong to another size.
     pub fn inverse(
         &self,
         spectrum: &mut [Complex<T>],

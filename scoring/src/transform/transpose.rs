@@ -7,7 +7,7 @@ const TOGETHER: usize = 8;
 /// (j, i). Rows lie `strides` apart, in the source and in the target.
 ///
 /// # Panics
-/// Where a row of the source or the target ends before what is asked of it.
+/// If a row of the source or the target is too short.
 #[inline(always)]
 pub(crate) fn transpose<C: Copy>(
     (source, target): (&[C], &mut [C]),

@@ -1,4 +1,4 @@
-//! Truncation at run time: which of a correlation's modes are kept, and what leaving out the rest costs.
+//! Truncation at run time: the modes of a correlation that are kept, and the error without the rest.
 //!
 //! # Conventions
 //!
@@ -9,7 +9,7 @@
 //! - A magnitude is |G^(w)| / volume of a stored mode: what that frequency and its conjugate each add to a value at
 //!   most.
 
-use super::modes::ModeSet;
+use super::modes::{Column, ModeSet};
 
 /// Which modes come first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -56,18 +56,13 @@ impl Selection {
 
     /// At most `most` modes, from frequency zero outward; ties go by place in the set.
     pub fn low_frequency(modes: &ModeSet, most: usize) -> Self {
-        let mut groups = groups(modes);
-        groups.sort_by(|a, b| a.square.total_cmp(&b.square));
-        Self::first(modes, &groups, most)
+        Self::first(modes, &by_frequency(modes), most)
     }
 
-    /// At most `most` modes by falling magnitude, a group standing where its mean square puts it; ties go by place in
-    /// the set.
-    ///
-    /// `magnitudes` has one value for each mode of the set.
+    /// At most `most` modes by falling magnitude, groups by their mean square; ties go by place in the set.
     ///
     /// # Panics
-    /// Where they are fewer or more.
+    /// Unless there is one magnitude per mode of the set.
     pub fn by_magnitude(modes: &ModeSet, magnitudes: &[f64], most: usize) -> Self {
         assert_eq!(magnitudes.len(), modes.count, "one magnitude a mode");
         let mut keyed: Vec<(f64, Group)> = groups(modes)
@@ -113,13 +108,11 @@ impl Selection {
     }
 }
 
-/// Root mean square, over all translations of the box, of what the modes outside of a selection add to a correlation:
-/// by Parseval the root of the sum of their squared magnitudes.
-///
-/// At one translation magnitudes bound an error by their sum alone, which has all modes in phase and is too wide to use.
+/// Root mean square, over all translations of the box, of the part of a correlation outside of a selection of modes: by
+/// Parseval the root of the sum of their squared magnitudes.
 ///
 /// # Panics
-/// Where magnitudes or selection belong to another set.
+/// If magnitudes or selection belong to another set.
 pub fn rms_left_out(modes: &ModeSet, selection: &Selection, magnitudes: &[f64]) -> f64 {
     assert_eq!(magnitudes.len(), modes.count, "one magnitude a mode");
     assert_eq!(
@@ -138,12 +131,8 @@ pub fn rms_left_out(modes: &ModeSet, selection: &Selection, magnitudes: &[f64]) 
 
 /// Number of modes in a set, conjugates counted.
 pub fn total(modes: &ModeSet) -> usize {
-    let plane: usize = modes
-        .columns
-        .iter()
-        .filter(|c| c.kz == 0)
-        .map(|c| c.len())
-        .sum();
+    let plane = modes.columns.iter().filter(|column| column.kz == 0);
+    let plane: usize = plane.map(Column::count).sum();
     2 * modes.count - plane
 }
 
@@ -151,8 +140,7 @@ pub fn total(modes: &ModeSet) -> usize {
 /// also cost less. Its shells are whole, so it may hold fewer than [`Selection::low_frequency`] keeps; it always holds
 /// frequency zero.
 pub fn ball(modes: &ModeSet, most: usize) -> ModeSet {
-    let mut groups = groups(modes);
-    groups.sort_by(|a, b| a.square.total_cmp(&b.square));
+    let groups = by_frequency(modes);
     let mut held = 0;
     let Some(beyond) = groups.iter().position(|group| {
         held += group.modes;
@@ -173,6 +161,13 @@ pub fn ball(modes: &ModeSet, most: usize) -> ModeSet {
         .find(|&square| square > last * (1.0 + 1e-9))
         .unwrap_or(stop);
     ModeSet::new(modes.size, modes.lengths, 0.5 * (last.sqrt() + next.sqrt()))
+}
+
+/// All groups of a set from frequency zero outward; ties go by place.
+fn by_frequency(modes: &ModeSet) -> Vec<Group> {
+    let mut groups = groups(modes);
+    groups.sort_by(|a, b| a.square.total_cmp(&b.square));
+    groups
 }
 
 /// All groups of a set, by rising place.

@@ -1,7 +1,7 @@
 //! The receptor's components that the ligand's knots read, and which knot reads which.
 //!
 //! With few radii a component belongs to a radius, and every knot reads one. With many, knots would read all of the
-//! lifted modes; the factorisation of the lifted axis then stands for them.
+//! lifted modes; the factorisation of the lifted axis then replaces them.
 
 use crate::engine::Plan;
 use crate::engine::{Factors, ReceptorSpectra};

@@ -4,8 +4,8 @@
 //!
 //! sum_k H_k exp(i k theta) = sum_{k >= 0} E_k cos k theta + O_k sin k theta,
 //!
-//! where E_k = H_k + H_-k and O_k = i (H_k - H_-k). Cosine and sine are real, so a value costs half of what the complex
-//! sum does, and its slope along x, sum_k k (O_k cos k theta - E_k sin k theta), as much again. Of a conjugate pair of
+//! where E_k = H_k + H_-k and O_k = i (H_k - H_-k). Cosine and sine are real, so a value costs half of the complex
+//! sum, and its slope along x, sum_k k (O_k cos k theta - E_k sin k theta), as much again. Of a conjugate pair of
 //! columns one is kept, with twice the weight, and the real part of the sum is the function.
 
 use crate::transform::modes::ModeSet;
@@ -16,7 +16,7 @@ use std::ops::Range;
 /// E and O of one harmonic: re E, im E, re O, im O.
 pub(super) type Harmonic = [f64; 4];
 
-/// Where the kept modes lie: the same for every spectrum of a configuration.
+/// Places of the kept modes: the same for every spectrum of a correlation.
 #[derive(Clone, Debug)]
 pub(super) struct Layout {
     /// Box lengths, Å.

@@ -1,7 +1,7 @@
 //! The correlation at one pose, without a grid: G(R, t) = sum_w G^(w; R) exp(2 pi i w.t) over m' chosen modes.
 //!
-//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes. B&I:
-//! section 4.1, eq. 50 for collision, the end of 4.2 for the score, Fig. 9 for times. There are two ways:
+//! The correlation is a trigonometric polynomial in t, so its value and gradient at any pose are sums over modes (B&I,
+//! section 4.1, eq. 50, and the end of 4.2). There are two ways:
 //!
 //! - [`TruncatedCorrelation::prepare`] sums the ligand's knots into the spectrum of one rotation. Each translation then
 //!   costs O(m') by [`RotationSpectrum::gradient`], with the force.
@@ -12,8 +12,8 @@
 //!
 //! A pose takes a ligand knot at y to R y + t in the receptor's file frame; force per Å, torque per radian about the
 //! ligand's centre. Modes are counted with their conjugates, and the lifted axis is summed over. All sums run in f64.
-//! The polynomial repeats with the box. Where the ligand's centre lies outside the box, whose edge no contact reaches,
-//! value and gradient are zero.
+//! The polynomial repeats with the box. With the ligand's centre outside the box, whose edge no contact reaches, value
+//! and gradient are zero.
 
 mod components;
 mod layout;
@@ -24,7 +24,7 @@ use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::Selection;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use knotdock_structures::Knots;
 use layout::{Harmonic, Layout};
 use nalgebra::{UnitQuaternion, Vector3};
@@ -43,8 +43,7 @@ pub struct TruncatedCorrelation {
 }
 
 impl TruncatedCorrelation {
-    /// Takes the selected modes of a correlation ([`crate::quantity::Quantity`] says of what: score, slice or
-    /// sensitivity).
+    /// Takes the selected modes of a correlation, of any [`crate::quantity::Quantity`].
     pub fn new(
         plan: &Plan,
         spectra: &ReceptorSpectra,
@@ -59,7 +58,7 @@ impl TruncatedCorrelation {
         let layout = Layout::new(plan.modes(), selection);
         let components = components::of(plan, spectra, ligand.len());
         let volume = plan.modes().volume();
-        // The receptor lies in the middle of its block, not at the origin: that phase is taken out once.
+        // The receptor is in the middle of its block, not at the origin: that phase is taken out once.
         let turns = components::centering(plan, spectra);
         let values = components
             .iter()
@@ -103,21 +102,18 @@ impl TruncatedCorrelation {
         let Some(center) = self.frame.position(&pose.rotation, &pose.translation) else {
             return Default::default();
         };
-        vectorized(
-            #[inline(always)]
-            || {
-                let rotation = pose.rotation.to_rotation_matrix();
-                let mut score = 0.0;
-                let mut gradient = PoseGradient::default();
-                for block in &self.blocks {
-                    let arms = block.turned(&rotation);
-                    let values = &self.components[block.component];
-                    let read = work.read.read(&self.layout, values, &arms, &center);
-                    block.gather(&read, &arms, &mut score, &mut gradient);
-                }
-                (score, gradient)
-            },
-        )
+        vectorize!({
+            let rotation = pose.rotation.to_rotation_matrix();
+            let mut score = 0.0;
+            let mut gradient = PoseGradient::default();
+            for block in &self.blocks {
+                let arms = block.turned(&rotation);
+                let values = &self.components[block.component];
+                let read = work.read.read(&self.layout, values, &arms, &center);
+                block.gather(&read, &arms, &mut score, &mut gradient);
+            }
+            (score, gradient)
+        })
     }
 
     /// The spectrum G^(w; R) of one rotation.
@@ -127,23 +123,25 @@ impl TruncatedCorrelation {
         work: &mut Workspace,
     ) -> RotationSpectrum {
         let mut values = vec![[0.0; 4]; self.layout.harmonics.len()];
-        vectorized(
-            #[inline(always)]
-            || {
-                work.gather.gather(
-                    &self.layout,
-                    &self.components,
-                    &self.blocks,
-                    &rotation.to_rotation_matrix(),
-                    &mut values,
-                );
-            },
-        );
-        RotationSpectrum::new(Arc::clone(&self.layout), self.frame, *rotation, values)
+        vectorize!({
+            work.gather.gather(
+                &self.layout,
+                &self.components,
+                &self.blocks,
+                &rotation.to_rotation_matrix(),
+                &mut values,
+            );
+        });
+        RotationSpectrum {
+            layout: Arc::clone(&self.layout),
+            frame: self.frame,
+            rotation: *rotation,
+            values,
+        }
     }
 }
 
-/// Where the two bodies lie.
+/// Places of the two bodies.
 #[derive(Clone, Copy, Debug)]
 struct Frame {
     pub receptor_center: Vector3<f64>,
@@ -194,20 +192,6 @@ pub struct RotationSpectrum {
 }
 
 impl RotationSpectrum {
-    fn new(
-        layout: Arc<Layout>,
-        frame: Frame,
-        rotation: UnitQuaternion<f64>,
-        values: Vec<Harmonic>,
-    ) -> Self {
-        Self {
-            layout,
-            frame,
-            rotation,
-            values,
-        }
-    }
-
     /// A correlation whose spectrum is known from elsewhere, a grid for instance: `mode` gives G^(w) / volume by place
     /// in the set, and must be that of a real function. Both bodies have their centres at the origin and the rotation
     /// is none, so that a pose's translation is the place in the box at which the correlation is read.
@@ -217,13 +201,16 @@ impl RotationSpectrum {
         mode: impl Fn(usize) -> Complex64,
     ) -> Self {
         let layout = Layout::new(modes, selection);
-        let values = layout.harmonics_of(1.0, mode);
-        let frame = Frame {
-            receptor_center: Vector3::zeros(),
-            ligand_center: Vector3::zeros(),
-            half: Vector3::from(modes.lengths) * 0.5,
-        };
-        Self::new(Arc::new(layout), frame, UnitQuaternion::identity(), values)
+        Self {
+            frame: Frame {
+                receptor_center: Vector3::zeros(),
+                ligand_center: Vector3::zeros(),
+                half: Vector3::from(modes.lengths) * 0.5,
+            },
+            rotation: UnitQuaternion::identity(),
+            values: layout.harmonics_of(1.0, mode),
+            layout: Arc::new(layout),
+        }
     }
 
     /// Buffers for [`Self::gradient`], where no `TruncatedCorrelation` has made them.
@@ -255,10 +242,7 @@ impl RotationSpectrum {
         work: &mut Workspace,
     ) -> (f64, Vector3<f64>) {
         match self.frame.position(&self.rotation, translation) {
-            Some(position) => vectorized(
-                #[inline(always)]
-                || work.place.sum(&self.layout, &self.values, &position),
-            ),
+            Some(position) => vectorize!(work.place.sum(&self.layout, &self.values, &position)),
             None => Default::default(),
         }
     }

@@ -130,7 +130,7 @@ pub(super) struct Block {
     pub weights: Lane,
 }
 
-/// What the knots of a block read: value and slope along each axis, per Å.
+/// Values and slopes (per Å) along each axis at the knots of a block.
 pub(super) struct Read {
     pub value: Lane,
     pub slope: [Lane; 3],
@@ -175,7 +175,7 @@ impl Block {
         arms
     }
 
-    /// Adds what the knots read to a score and its gradient.
+    /// Adds values and slopes at the knots to a score and its gradient.
     #[inline(always)]
     pub fn gather(&self, read: &Read, arms: &Arms, score: &mut f64, gradient: &mut PoseGradient) {
         for (lane, &weight) in self.weights.iter().enumerate() {
@@ -318,7 +318,7 @@ impl ReadTables {
         }
     }
 
-    /// What a block at `arms` about `center` reads of a component.
+    /// Values and slopes of a component at a block at `arms` about `center`.
     #[inline(always)]
     pub fn read(
         &mut self,

@@ -67,18 +67,16 @@ impl Densities {
     pub fn new(collision: &Collision) -> Result<Self, Error> {
         let [(first, a), (second, b)] = collision.solids.map(tree_of);
         let kernel = PairOverlap::new(ALPHA).map_err(Error::lasting)?;
-        let listed = |tree: &BallHierarchy, weights: &[f64]| -> Vec<WeightedBall> {
-            let balls = tree.balls().iter().zip(weights);
-            balls
+        let balls = |tree: &BallHierarchy, weights: &[f64]| -> Vec<WeightedBall> {
+            let pairs = tree.balls().iter().zip(weights);
+            pairs
                 .map(|(ball, &weight)| weighted(ball, weight))
                 .collect()
         };
         let prepared = || {
-            let (a, b) = (listed(&first, &a), listed(&second, &b));
+            let (a, b) = (balls(&first, &a), balls(&second, &b));
             OverlapModes::with_margin(&kernel, &a, &b, collision.max_modes, collision.margin)
-                .map_err(|error| {
-                    Error::input(error).help("give finite balls, or use the method tree")
-                })
+                .map_err(|error| error.help("give finite balls, or use the method tree"))
         };
         let all_pairs = pairs_nanoseconds((a.len() * b.len()) as u64);
         let modes = match collision.method {

@@ -1,5 +1,5 @@
-//! Collision of two solids at a pose (B&I, section 4.1): a verdict with its certificate, bounds of the signed distance,
-//! the shared volume, and the force and torque of an overlap energy. [`Collision`] is the entry.
+//! Collision of two solids at a pose (B&I, section 4.1): a verdict with its certificate, signed distance, shared volume,
+//! and the force and torque of an overlap energy. [`Collision`] is the entry.
 //!
 //! # Conventions
 //!
@@ -8,7 +8,7 @@
 //!   penetration depth, the length of the shortest translation that parts them.
 //! - Two solids closer than the **margin** collide.
 //!
-//! # What certifies a verdict
+//! # Certificates
 //!
 //! Inner balls lie inside the solids and outer balls hold them ([`knotdock_structures::ball_solid`]). So
 //!
@@ -192,10 +192,9 @@ impl<'a> Collision<'a> {
     /// Sets the distance below which solids collide, in the files' unit; not negative.
     #[must_use]
     pub fn margin(self, margin: f64) -> Self {
-        let densities = OnceLock::new();
         Self {
             margin,
-            densities,
+            densities: OnceLock::new(),
             ..self
         }
     }
@@ -203,10 +202,9 @@ impl<'a> Collision<'a> {
     /// Sets how verdicts and forces are computed.
     #[must_use]
     pub fn method(self, method: Method) -> Self {
-        let densities = OnceLock::new();
         Self {
             method,
-            densities,
+            densities: OnceLock::new(),
             ..self
         }
     }
@@ -214,10 +212,9 @@ impl<'a> Collision<'a> {
     /// Sets the maximum number of Fourier modes, conjugates included.
     #[must_use]
     pub fn max_modes(self, max_modes: usize) -> Self {
-        let densities = OnceLock::new();
         Self {
             max_modes,
-            densities,
+            densities: OnceLock::new(),
             ..self
         }
     }
@@ -348,10 +345,7 @@ impl CollisionQuery<'_> {
     /// Everything that the collision requests.
     fn report(mut self) -> CollisionReport {
         let certificate = self.certificate();
-        let contact = match self.collision.force {
-            true => self.contact(),
-            false => None,
-        };
+        let contact = self.collision.force.then(|| self.contact()).flatten();
         let distance = self.collision.distance.then(|| self.distance());
         let shared_volume = self.collision.shared_volume.then(|| self.shared_volume());
         CollisionReport {

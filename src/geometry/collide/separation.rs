@@ -4,12 +4,11 @@
 //! shorter than the depth of the deepest pair: a push of at most twice that is taken as it is.
 //!
 //! - **Pushes.** All pairs of outer balls that meet push along their centres, each by its depth. B goes along the sum
-//!   until the deepest pair is parted, again and again. This follows a curved way out of shallow contacts, and ends
-//!   nowhere where solids interlock. The line from the first to the last place is tried as well.
-//! - **Lines.** Body B moves along a line, away from A. At every place the deepest pair known says how far B must go at
-//!   least to part that pair. The lines are that of the deepest pair, that of the centres of mass, and the axes both
-//!   ways. Each ends, since balls are convex, so that a line leaves each pair once. After many steps it ends beyond the
-//!   balls about all of A and all of B.
+//!   until the deepest pair is parted, again and again. This follows a curved way out of shallow contacts, and fails if
+//!   solids interlock. The line from the first to the last place is tried as well.
+//! - **Lines.** Body B moves along a line, away from A, in steps that part the deepest pair known. The lines are that of
+//!   the deepest pair, that of the centres of mass, and the axes both ways. After many steps a line ends beyond the balls
+//!   about all of A and all of B.
 
 use knotdock_structures::Ball;
 use knotdock_structures::ball_solid::{Closest, Limits};

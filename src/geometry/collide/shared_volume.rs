@@ -1,7 +1,7 @@
 //! The volume that two solids share at a pose, between that of their inner and that of their outer balls.
 //!
-//! A point of both solids lies in a ball of either, and these two meet. So only balls that meet one of the other body's
-//! count. What their unions share is exact but for rounding ([`ball_union::shared_volume`]).
+//! A point of both solids is in a ball of either, and these two meet. So only balls that meet one of the other body's
+//! count. The volume that their unions share is exact but for rounding ([`ball_union::shared_volume`]).
 //!
 //! That cannot stop halfway. Under a deadline the volume is bounded by balls alone: from below by the largest lens of two
 //! inner balls, from above by the balls of either solid that meet one of the other.
@@ -35,7 +35,7 @@ impl SharedVolume {
 }
 
 impl CollisionQuery<'_> {
-    /// The volume of the region that lies in both solids.
+    /// The volume of the region in both solids.
     pub fn shared_volume(&mut self) -> SharedVolume {
         if self.end.is_some() {
             return self.volume_by_pairs();

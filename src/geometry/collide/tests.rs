@@ -10,7 +10,7 @@ use knotdock_structures::sampling::ball_tree::BallTree;
 
 use super::{Certificate, Collision, CollisionReport, DistanceBounds, Method, Verdict};
 use crate::geometry::bracket::Bracket;
-use crate::geometry::obstacle::obstacle;
+use crate::geometry::obstacle::{mirrored, sum};
 
 fn balls(list: &[([f64; 3], f64)]) -> BallSolid {
     let balls: Vec<Ball> = list
@@ -378,7 +378,7 @@ fn the_obstacle_agrees_with_the_verdicts() {
         let part = |by: f64| 2.0 * (f64::from(turn) * by).fract() - 1.0;
         let rotation = [0.3 + part(0.8191), part(0.671), part(0.5497), part(0.4503)];
         let turned = Pose::from_parts(rotation, [0.0; 3]);
-        let found = obstacle(&a, &b, &turned, 0.0);
+        let found = sum(&a, &mirrored(&b, &turned), 0.0);
         let trees = [&found.inner, &found.outer].map(|balls| BallTree::new(balls));
         for step in 0..500 {
             let part = |by: f64| 2.2 * (2.0 * (f64::from(500 * turn + step) * by).fract() - 1.0);

@@ -214,7 +214,7 @@ impl Grid {
     }
 }
 
-/// Where a spectrum of a grid has a frequency with kz >= 0.
+/// Place in a grid's spectrum of a frequency with kz >= 0.
 fn spectrum_place([kx, ky, kz]: [i32; 3], [nx, ny, _]: [usize; 3]) -> usize {
     (kz as usize * ny + place(ky, ny)) * nx + place(kx, nx)
 }

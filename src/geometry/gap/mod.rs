@@ -9,8 +9,8 @@
 //!   ([`ways`]), a product, and one transform back;
 //! - *truncated*: of the grid's product only the m' modes of lowest frequency, transformed back.
 //!
-//! A truncated function rings about zero, so it is compared with its own residual r: where it exceeds r the solids meet
-//! for certain. How far a point of the obstacle on the grid can lie from these is the Hausdorff error.
+//! A truncated function rings about zero: only where it exceeds its residual do the solids meet for certain. The
+//! Hausdorff error is the largest distance of a point of the obstacle from these points.
 //!
 //! Lengths are relative to the middle of A; B is turned before and about its own middle.
 
@@ -35,9 +35,9 @@ use super::obstacle::reduce::reduced_sum;
 use expansion::{Expansion, Task};
 use grid::{Buffers, Grid};
 use spectrum::{Body, FrequencyBox, Kernel};
-use ways::{Points, direct, fast_3d, plan_3d};
+use ways::Points;
 
-/// Points at which all ways are held against the pairs.
+/// Points at which all ways are compared with the pairs.
 const CHECKED: usize = 24;
 /// Pairs of balls that are summed for the reference at most.
 const MAX_PAIRS: usize = 4_000_000;
@@ -262,13 +262,11 @@ impl Scene {
             let expansion = Expansion::compressed(&task);
             let points = Points::new(body, self.edge, frequencies, &expansion);
             spectra.push(if fast {
-                let mut plan = plan_3d(&points, TOLERANCE)?;
-                fast_3d(&points, &mut plan)?
+                ways::fast(&points, &mut ways::planned(&points, TOLERANCE)?)?
             } else {
-                direct(&points)
+                ways::direct(&points)
             });
         }
-        let half = frequencies.half();
         let mut product = vec![Complex64::default(); n * n * (n / 2 + 1)];
         let volume = self.edge.powi(3);
         for (index, (a, b)) in spectra[0].iter().zip(&spectra[1]).enumerate() {
@@ -277,7 +275,6 @@ impl Scene {
             if kx.unsigned_abs() as usize == n / 2 || ky.unsigned_abs() as usize == n / 2 {
                 continue;
             }
-            debug_assert!((kz as usize) < half[2]);
             product[(kz as usize * n + place(ky, n)) * n + place(kx, n)] = a * b.conj() / volume;
         }
         Ok(product)
@@ -310,7 +307,7 @@ impl Scene {
             .collect()
     }
 
-    /// How far a blocked point lies from those whose value exceeds `level`, at most; `None` where none does.
+    /// Largest distance of a blocked point from those whose value exceeds `level`; `None` if none does.
     fn hausdorff(&self, blocked: &[bool], values: &[f64], level: f64) -> Option<f64> {
         let point = |index: usize| Ball {
             center: self.translation(index),

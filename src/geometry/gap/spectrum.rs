@@ -135,8 +135,8 @@ impl FrequencyBox {
         self.size.iter().map(|n| (n / 2) * (n / 2)).sum()
     }
 
-    /// About `count` places spread over the box; the first is that of frequency zero. None lies where a grid of
-    /// the same size has its Nyquist frequencies, which it cannot distinguish from their conjugates.
+    /// About `count` places spread over the box; the first is that of frequency zero. None is a Nyquist
+    /// frequency of a grid of the same size, which cannot distinguish it from its conjugate.
     pub fn sample(self, count: usize) -> Vec<usize> {
         let [a, b, c] = self.half();
         let zero = (a / 2 * b + b / 2) * c;

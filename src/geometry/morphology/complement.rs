@@ -3,7 +3,7 @@
 //! The depth of a point in the complement is its distance to the union, and Algorithm 1 samples it as that of any solid
 //! ([`cover_nodes`]).
 //!
-//! - [`inside`]: balls that reach no ball of the union. Every free node lies in one of them.
+//! - [`inside`]: balls that reach no ball of the union. Every free node is in one of them.
 //! - [`holding`]: balls that hold all of the cube that the union leaves free. Let eps be the reach of a node's cell.
 //!   Nodes with a depth of more than eps are covered by balls of the depth less eps, which grow by eps and then hold
 //!   the cells, and still reach no ball of the union. Of the other cells near the surface, each is halved along its
@@ -40,7 +40,6 @@ impl Cube {
     pub fn about((low, high): ([f64; 3], [f64; 3]), per_axis: usize, cells: f64) -> Self {
         let half = (0..3).map(|axis| 0.5 * (high[axis] - low[axis]));
         let half = half.fold(0.0, f64::max);
-        // Two cells of margin in units of a cell of the result.
         let across = (per_axis.max(8) - 1) as f64;
         Self {
             center: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
@@ -70,7 +69,7 @@ impl Cube {
         balls.iter().map(|ball| shifted(ball, by)).collect()
     }
 
-    /// Balls relative to what the middle is relative to.
+    /// Balls relative to the middle's own origin.
     fn outward(&self, balls: Vec<Ball>) -> Vec<Ball> {
         let balls = balls.iter().map(|ball| shifted(ball, self.center));
         balls.collect()
@@ -101,7 +100,7 @@ pub fn inside(union: &[Ball], cube: &Cube) -> Vec<Ball> {
     cube.outward(cover_nodes(&distances(&tree, cube.grid(), 0.0), MU))
 }
 
-/// Balls that hold all of the cube but what the union holds.
+/// Balls that, with the union, hold all of the cube.
 pub fn holding(union: &[Ball], cube: &Cube) -> Vec<Ball> {
     let tree = BallTree::new(&cube.inward(union));
     let grid = cube.grid();
@@ -122,75 +121,53 @@ pub fn holding(union: &[Ball], cube: &Cube) -> Vec<Ball> {
         .map(|&node| {
             let center = grid.node(node);
             let is_held = |ball: &Ball| free.holds(ball) || tree.holds(ball);
-            let mut left = Part::default();
-            left.find(&is_held, center, half, HALVINGS);
-            left.ball()
+            let mut left = Vec::new();
+            unheld(&is_held, center, half, HALVINGS, &mut left);
+            (!left.is_empty()).then(|| around(bounds(&left)))
         })
         .collect();
     balls.extend(of_cells.into_iter().flatten());
     cube.outward(balls)
 }
 
-/// The box around the parts of a cell that no ball holds.
-struct Part {
-    low: [f64; 3],
-    high: [f64; 3],
-}
-
-impl Default for Part {
-    fn default() -> Self {
-        Self {
-            low: [f64::INFINITY; 3],
-            high: [f64::NEG_INFINITY; 3],
-        }
+/// Lists the parts of the cube of half edge `half` about `center` that no single ball holds, each as the ball inside it.
+fn unheld(
+    is_held: &impl Fn(&Ball) -> bool,
+    center: [f64; 3],
+    half: f64,
+    halvings: u32,
+    left: &mut Vec<Ball>,
+) {
+    let radius = half * 3f64.sqrt();
+    if is_held(&Ball { center, radius }) {
+        return;
+    }
+    if halvings == 0 {
+        let radius = half;
+        left.push(Ball { center, radius });
+        return;
+    }
+    let quarter = 0.5 * half;
+    for corner in 0..8u32 {
+        let middle = [0, 1, 2].map(|axis| {
+            let sign = if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
+            center[axis] + sign * quarter
+        });
+        unheld(is_held, middle, quarter, halvings - 1, left);
     }
 }
 
-impl Part {
-    /// Adds what is left of the cube of half edge `half` about `center`.
-    fn find(
-        &mut self,
-        is_held: &impl Fn(&Ball) -> bool,
-        center: [f64; 3],
-        half: f64,
-        halvings: u32,
-    ) {
-        let around = Ball {
-            center,
-            radius: half * 3f64.sqrt(),
-        };
-        if is_held(&around) {
-            return;
-        }
-        if halvings == 0 {
-            for (axis, middle) in center.into_iter().enumerate() {
-                self.low[axis] = self.low[axis].min(middle - half);
-                self.high[axis] = self.high[axis].max(middle + half);
-            }
-            return;
-        }
-        let quarter = 0.5 * half;
-        for corner in 0..8u32 {
-            let middle = [0, 1, 2].map(|axis| {
-                let sign = if corner >> axis & 1 == 1 { 1.0 } else { -1.0 };
-                center[axis] + sign * quarter
-            });
-            self.find(is_held, middle, quarter, halvings - 1);
-        }
-    }
-
-    /// The ball around the box.
-    fn ball(&self) -> Option<Ball> {
-        let extent = [0, 1, 2].map(|axis| 0.5 * (self.high[axis] - self.low[axis]));
-        (extent[0] > 0.0).then(|| Ball {
-            center: [0, 1, 2].map(|axis| 0.5 * (self.low[axis] + self.high[axis])),
-            radius: (extent.iter().map(|part| part * part).sum::<f64>()).sqrt(),
-        })
+/// The ball around a box.
+fn around((low, high): ([f64; 3], [f64; 3])) -> Ball {
+    let extent = [0, 1, 2].map(|axis| 0.5 * (high[axis] - low[axis]));
+    Ball {
+        center: [0, 1, 2].map(|axis| 0.5 * (low[axis] + high[axis])),
+        radius: (extent.iter().map(|part| part * part).sum::<f64>()).sqrt(),
     }
 }
 
-/// A bound of how far a point of the outer union lies from the inner one; infinite if only the latter is empty, zero
-/// if both are.
+/// Upper bound of the distance of a point of the outer union from the inner one; infinite if only the latter is empty,
+/// zero if both are.
 ///
 /// Every point of the outer union has a node within eps, at which the outer distance is eps at most. So eps more than
 /// the largest inner distance of such nodes is the bound.

@@ -1,6 +1,6 @@
 //! Cells of a grid that single balls hold, by which most balls of a sum are left out before they are stored.
 //!
-//! Of a sum most balls lie deep inside the union, but few in a single other ball. A ball that meets none but held cells
+//! Most balls of a sum are deep inside the union, but few in a single other ball. A ball that meets none but held cells
 //! changes no complement within the grid's cube: each of these cells is in a ball that is kept.
 
 use knotdock_structures::sampling::Ball;
@@ -9,7 +9,7 @@ use knotdock_structures::sampling::grid::Grid;
 /// The cells about the nodes of a grid, a bit each.
 pub struct HeldCells {
     grid: Grid,
-    /// Words a row along x.
+    /// Words per row along x.
     words: usize,
     held: Vec<u64>,
 }
@@ -108,7 +108,7 @@ fn mask(from: usize, to: usize, word: usize) -> u64 {
 mod tests {
     use super::*;
 
-    /// What is left out meets only cells that lie in one of the balls taken.
+    /// Balls left out meet only cells that are in one of the balls taken.
     #[test]
     fn balls_left_out_add_nothing() {
         let grid = Grid::of_edge(2.0, 70);

@@ -76,7 +76,7 @@ pub fn dilated(a: &Bracket, b: &Bracket, options: &MorphologyOptions) -> Result<
     Ok(sum(a, b, 0.0))
 }
 
-/// The points within `distance` >= 0 of A, or, below zero, those of A that lie at least that deep.
+/// The points within `distance` >= 0 of A, or, below zero, those of A at least that deep.
 ///
 /// # Errors
 /// [`Error`] if memory has no room for the balls.

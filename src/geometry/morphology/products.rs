@@ -32,7 +32,7 @@ pub fn product(a: &Bracket, poses: &[Pose], options: &MorphologyOptions) -> Resu
     })
 }
 
-/// The quotient over poses, at least one: the points that lie in A in each of them. Its eps is measured.
+/// The quotient over poses, at least one: the points that are in A in each of them. Its eps is measured.
 ///
 /// By duality: the complement of the product of the complement of A.
 ///
@@ -60,7 +60,7 @@ pub fn quotient(
         return Ok(empty);
     }
     let result = Cube::about((low, high), options.per_axis, MARGIN);
-    // The cube of the result, as seen from A in each pose, lies within this one about A.
+    // The cube of the result, as seen from A in each pose, is within this one about A.
     let (a_low, a_high) = a.bounds();
     let mut around = Cube::about((a_low, a_high), options.per_axis, MARGIN);
     let reach = poses.iter().map(|pose| {

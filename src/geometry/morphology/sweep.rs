@@ -1,9 +1,9 @@
 //! Sweeps: all points that a solid passes on a path of poses, with tolerances.
 //!
 //! Between two poses of the path the motion is the geodesic: the rotation turns at a constant rate and the translation
-//! moves on a straight line. On a step of angle theta and translation dt a point x moves by theta |x| + |dt| at most, so
-//! that every point of the step is within half of that of a sampled pose. Outer balls grow by it, each by what its own
-//! centre may move, since a ball turns about its centre unseen. Inner balls are those of the samples alone.
+//! moves on a straight line. On a step of angle theta and translation dt a point x moves by theta |x| + |dt| at most.
+//! Every point of the step is within half of that of a sampled pose. Outer balls grow by it, each by the motion of its
+//! own centre, since a ball turns about its centre unseen. Inner balls are those of the samples alone.
 //!
 //! A tolerance R lets each pose vary within the geodesic ball of that radius, sqrt(2 theta^2 + |dt|^2) <= R (B&I, eq. 59).
 //! A point x then moves by R sqrt(|x|^2 / 2 + 1) at most, which outer balls grow by. Translations alone reach R in every
@@ -27,11 +27,11 @@ pub struct SweepOptions {
     pub tolerance: f64,
 }
 
-/// Samples of a path, and the angle and length of the longest step about each.
-struct Samples {
-    poses: Vec<Pose>,
+/// A sampled pose of a path.
+struct Sample {
+    pose: Pose,
     /// Angle and translation of the longer of the steps before and after.
-    steps: Vec<(f64, f64)>,
+    step: (f64, f64),
 }
 
 /// Steps between two poses, so many that no point within `reach` of the frame's origin moves by more than `step`; and
@@ -47,25 +47,24 @@ fn steps_between(ends: &[Pose], reach: f64, step: f64) -> (f64, [f64; 2]) {
 }
 
 /// Poses along a path, so dense that no point within `reach` of the frame's origin moves by more than `step`.
-fn samples(path: &[Pose], reach: f64, step: f64) -> Samples {
-    let mut found = Samples {
-        poses: path.iter().copied().take(1).collect(),
-        steps: vec![(0.0, 0.0)],
-    };
+fn samples(path: &[Pose], reach: f64, step: f64) -> Vec<Sample> {
+    let first = path.iter().take(1).map(|&pose| Sample {
+        pose,
+        step: (0.0, 0.0),
+    });
+    let mut samples: Vec<Sample> = first.collect();
     for pair in path.windows(2) {
         let (count, [turn, shift]) = steps_between(pair, reach, step);
-        let one = (turn / count, shift / count);
+        let step = (turn / count, shift / count);
         for number in 1..=count as usize {
-            if let Some(last) = found.steps.last_mut() {
-                *last = (last.0.max(one.0), last.1.max(one.1));
+            if let Some(Sample { step: last, .. }) = samples.last_mut() {
+                *last = (last.0.max(step.0), last.1.max(step.1));
             }
-            found
-                .poses
-                .push(interpolated(&pair[0], &pair[1], number as f64 / count));
-            found.steps.push(one);
+            let pose = interpolated(&pair[0], &pair[1], number as f64 / count);
+            samples.push(Sample { pose, step });
         }
     }
-    found
+    samples
 }
 
 /// Poses that [`sweep`] would sample.
@@ -105,12 +104,12 @@ pub fn sweep(
     let varied = |far: f64| sweep.tolerance * (0.5 * far * far + 1.0).sqrt();
     let moved = |balls: &'_ [Ball], margin: &dyn Fn(f64, (f64, f64)) -> f64| {
         let mut all = Vec::new();
-        for (pose, &step) in samples.poses.iter().zip(&samples.steps) {
+        for &Sample { pose, step } in &samples {
             let place = pose.apply(a.origin);
             let by = [0, 1, 2].map(|axis| place[axis] - origin[axis]);
             all.extend(balls.iter().map(|ball| {
                 let far = from_frame(ball, a.origin);
-                shifted(&turned(ball, pose), by).grown(margin(far, step))
+                shifted(&turned(ball, &pose), by).grown(margin(far, step))
             }));
         }
         reduced(all)
@@ -119,7 +118,7 @@ pub fn sweep(
     let inner = moved(&a.inner, &|_, _| sweep.tolerance);
     let outer = moved(&a.outer, &|far, step| half_step(far, step) + varied(far));
     let far = reach(a);
-    let longest = samples.steps.iter().map(|&step| half_step(far, step));
+    let longest = samples.iter().map(|sample| half_step(far, sample.step));
     Ok(Bracket {
         origin,
         inner,

@@ -8,7 +8,7 @@
 //!
 //! - [`pair_sums`]: the n1 n2 balls, one after another, none stored.
 //! - [`reduce`]: the same union by fewer balls.
-//! - [`regions`]: connected regions of what is left free.
+//! - [`regions`]: connected free regions.
 
 pub mod reduce;
 pub mod regions;
@@ -16,31 +16,24 @@ pub mod regions;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::sampling::Ball;
 
-use super::bracket::{Bracket, turned};
+use super::bracket::Bracket;
 
-/// -R B: the balls turned by the rotation of a pose and reflected in the origin.
-pub fn reflected(balls: &[Ball], rotation: &Pose) -> Vec<Ball> {
-    let reflected = |ball: &Ball| {
-        let ball = turned(ball, rotation);
-        Ball {
-            center: ball.center.map(|part| 0.0 - part),
-            radius: ball.radius,
-        }
-    };
-    balls.iter().map(reflected).collect()
-}
-
-/// B reflected in the frame's origin after a rotation, as one summand of an obstacle.
+/// -R B: a solid turned by the rotation of a pose and reflected in the frame's origin, one summand of an obstacle.
 pub fn mirrored(solid: &Bracket, rotation: &Pose) -> Bracket {
-    let mut mirrored = solid.map(|balls| reflected(balls, rotation));
-    mirrored.origin = (rotation.rotation * nalgebra::Vector3::from(solid.origin))
-        .map(|part| 0.0 - part)
-        .into();
-    mirrored
+    let turn = rotation.rotation;
+    let mirror = |point| (turn * nalgebra::Vector3::from(point)).map(|part| 0.0 - part);
+    let reflected = |ball: &Ball| Ball {
+        center: mirror(ball.center).into(),
+        radius: ball.radius,
+    };
+    Bracket {
+        origin: mirror(solid.origin).into(),
+        ..solid.map(|balls| balls.iter().map(reflected).collect())
+    }
 }
 
-/// The n1 n2 balls (a + b, r + s + offset) of two sets, those of the first ball of the first set before all others;
-/// balls without a radius above zero are left out.
+/// The n1 n2 balls (a + b, r + s + offset) of two sets, in the order of the first set. Balls without a radius above zero
+/// are left out.
 ///
 /// B&I, eq. 41 and 44: the offset takes another slice of the lifted sum.
 pub fn pair_sums<'a>(
@@ -75,11 +68,6 @@ pub fn sum(first: &Bracket, second: &Bracket, offset: f64) -> Bracket {
     }
 }
 
-/// The translations at which A and R B + t meet, A + (-R B), reduced, with `offset` added to each radius.
-pub fn obstacle(fixed: &Bracket, moved: &Bracket, rotation: &Pose, offset: f64) -> Bracket {
-    sum(fixed, &mirrored(moved, rotation), offset)
-}
-
 #[cfg(test)]
 mod tests {
     use super::super::bracket::volume;
@@ -88,6 +76,10 @@ mod tests {
 
     fn ball(center: [f64; 3], radius: f64) -> Ball {
         Ball { center, radius }
+    }
+
+    fn obstacle(fixed: &Bracket, moved: &Bracket, rotation: &Pose, offset: f64) -> Bracket {
+        sum(fixed, &mirrored(moved, rotation), offset)
     }
 
     #[test]

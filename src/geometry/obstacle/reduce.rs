@@ -1,8 +1,8 @@
-//! Balls without those that lie in another one.
+//! Balls without those that are in another one.
 //!
-//! Balls come in blocks, the largest first. What the balls kept so far hold is dropped at once. The rest of a block is
-//! held against itself and then waits; when as many wait as half of those kept, all are held against each other. So the
-//! balls in memory are at most one and a half times the result and a block, and each is looked up a few times in a tree.
+//! Balls come in blocks, the largest first. Balls inside those kept so far are dropped. The rest of a block is compared
+//! with itself and then waits; when half as many wait as are kept, all are compared. So the balls in memory are at most
+//! one and a half times the result and a block.
 //!
 //! "Lies in" is exact up to rounding (1e-16 of a coordinate). Of balls equal in all but rounding the first is kept.
 

@@ -13,21 +13,9 @@ const HALVINGS: u32 = 6;
 
 /// Steps to the neighbours of a node, one of each opposite two: along edges and diagonals, so that some step leads away
 /// from any surface nearly along its normal, out of dimples between balls.
-const STEPS: [[isize; 3]; 13] = [
-    [1, 0, 0],
-    [0, 1, 0],
-    [0, 0, 1],
-    [1, 1, 0],
-    [1, -1, 0],
-    [1, 0, 1],
-    [1, 0, -1],
-    [0, 1, 1],
-    [0, 1, -1],
-    [1, 1, 1],
-    [1, 1, -1],
-    [1, -1, 1],
-    [1, -1, -1],
-];
+fn steps() -> impl Iterator<Item = [isize; 3]> {
+    (14..27).map(|number| [number / 9 - 1, number / 3 % 3 - 1, number % 3 - 1])
+}
 
 /// A component of the free nodes.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,7 +35,7 @@ pub fn free_regions(field: &BallField, tree: &BallTree) -> Vec<Region> {
             continue;
         }
         let numbers = grid.numbers(node);
-        for step in STEPS {
+        for step in steps() {
             let moved = |axis: usize| numbers[axis].checked_add_signed(step[axis]);
             let (Some(x), Some(y), Some(z)) = (moved(0), moved(1), moved(2)) else {
                 continue;
@@ -95,7 +83,7 @@ fn is_free(tree: &BallTree, a: [f64; 3], b: [f64; 3], length: f64, halvings: u32
     distance > 0.0 && (halvings == 0 || is_free(a, middle) && is_free(middle, b))
 }
 
-/// Sets of numbers that are joined two by two; the least number of a set stands for it.
+/// Sets of numbers that are joined two by two, each represented by its least number.
 struct DisjointSets(Vec<u32>);
 
 impl DisjointSets {

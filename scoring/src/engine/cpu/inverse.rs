@@ -1,7 +1,7 @@
 //! Products of the receptor's spectra with the ligand's, and their way back to the grid.
 //!
 //! The images of one ligand's transform go through together. A column of modes and the one with -ky are multiplied for
-//! all of them while both lie in the cache.
+//! all of them while both are in the cache.
 
 use super::PLANES;
 use super::transforms::{Buffers, Transforms};
@@ -11,7 +11,7 @@ use crate::grid_turn::GridTurn;
 use crate::peaks::{Rows, largest};
 use crate::transform::Real;
 use crate::transform::transpose::transpose;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use num_complex::Complex;
 
 /// Columns ky, and as many -ky, that go through the x transforms together: a cache line of a plane's rows.
@@ -20,10 +20,7 @@ pub(in crate::engine) const SIDE: usize = 8;
 impl<T: Real> Transforms<T> {
     /// Products of columns and their inverse along x and y: the rows along z of each turn's image.
     pub fn products(&self, turns: &[GridTurn], work: &mut Buffers<T>) {
-        vectorized(
-            #[inline(always)]
-            || self.multiply(turns, work),
-        );
+        vectorize!(self.multiply(turns, work));
     }
 
     #[inline(always)]
@@ -143,10 +140,7 @@ impl<T: Real> Transforms<T> {
 
     /// Rows of an image: complex to real along z, two at a time, and the best of each row.
     pub fn image(&self, image: usize, work: &mut Buffers<T>, grid: &mut Rows<T>) {
-        vectorized(
-            #[inline(always)]
-            || self.rows_to_grid(image, work, grid),
-        );
+        vectorize!(self.rows_to_grid(image, work, grid));
     }
 
     #[inline(always)]

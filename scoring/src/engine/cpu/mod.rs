@@ -119,7 +119,7 @@ impl CpuEngine {
         self.workspace_of(1)
     }
 
-    /// Buffers for so many images of a rotation together, `TOGETHER` at most.
+    /// Buffers for a number of images of a rotation together, `TOGETHER` at most.
     pub fn workspace_of(&self, images: usize) -> Workspace {
         let images = images.clamp(1, TOGETHER);
         let size = self.plan().size();
@@ -130,8 +130,8 @@ impl CpuEngine {
         }
     }
 
-    /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `turn` gave, in Å, in the
-    /// box centred on the receptor, along the axes of the receptor's file.
+    /// Position of the ligand's centre relative to the receptor's, in Å along the axes of the receptor's file, for a voxel
+    /// of the grid that `turn` gave.
     pub fn position_after(&self, turn: GridTurn, voxel: usize) -> Vector3<f64> {
         of_precision!(&self.0, transforms => transforms.position_after(turn, voxel))
     }
@@ -181,8 +181,8 @@ impl CpuEngine {
         self.correlate_each(&[turn], work, &mut |_, _| ());
     }
 
-    /// Time in seconds of each stage of one rotation and its images: spreading, forward planes, forward columns (these
-    /// three serve all images), product with the inverse along x and y, and rows (both for one image).
+    /// Seconds of each stage of a rotation: spreading, forward planes, forward columns (these three serve all images); then
+    /// for one image the product with the inverse along x and y, and the rows.
     pub fn stage_seconds(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace) -> [f64; 5] {
         let mut last = std::time::Instant::now();
         let mut lap = || {

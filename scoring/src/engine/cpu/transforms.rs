@@ -10,7 +10,7 @@ use crate::engine::receptor_spectra::{Factors, SpectrumList};
 use crate::grid_turn::GridTurn;
 use crate::transform::Real;
 use crate::transform::pruned_type1::{Forward, ForwardWorkspace};
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use num_complex::Complex;
@@ -31,7 +31,7 @@ pub(in crate::engine) struct Transforms<T: Real> {
     /// Place of the ligand's centre in its own block, and of the receptor's in its, Å.
     pub(in crate::engine) block_center: [f64; 3],
     pub(in crate::engine) receptor_center: [f64; 3],
-    /// Where the columns are read, for each turn that maps the modes onto themselves.
+    /// Sources of the columns, for each turn that maps the modes onto themselves.
     pub(in crate::engine) readings: Arc<[Vec<Reading>]>,
     pub(super) inverse_x: Arc<dyn Fft<T>>,
     pub(super) inverse_y: Arc<dyn Fft<T>>,
@@ -195,7 +195,7 @@ impl<T: Real> Transforms<T> {
         falling.chain((0..=side).map(move |k| value(up, k)))
     }
 
-    /// Buffers for so many images of a rotation together.
+    /// Buffers for a number of images of a rotation together.
     pub fn buffers(&self, images: usize) -> Buffers<T> {
         let [nx, ny, nz] = self.plan.modes().size;
         let zero = Complex::new(T::zero(), T::zero());
@@ -217,8 +217,7 @@ impl<T: Real> Transforms<T> {
         }
     }
 
-    /// Position of the ligand's centre relative to the receptor's for a voxel of the grid that `turn` gave, in Å, in the
-    /// box centred on the receptor, along the axes of the receptor's file.
+    /// [`super::CpuEngine::position_after`].
     pub fn position_after(&self, turn: GridTurn, voxel: usize) -> Vector3<f64> {
         let [_, ny, nz] = self.plan.modes().size;
         let index = [voxel / (ny * nz), voxel / nz % ny, voxel % nz];
@@ -248,29 +247,18 @@ impl<T: Real> Transforms<T> {
         for (point, y) in work.points.iter_mut().zip(&self.ligand) {
             *point = (matrix * y).into();
         }
-        vectorized(
-            #[inline(always)]
-            || {
-                self.forward
-                    .spread(&work.points, &self.weights, &mut work.forward)
-            },
-        );
+        let (points, weights) = (&work.points, &self.weights);
+        vectorize!(self.forward.spread(points, weights, &mut work.forward));
     }
 
     /// Forward along z and y: a component of the ligand's transform.
     pub fn planes(&self, component: usize, work: &mut Buffers<T>) {
-        vectorized(
-            #[inline(always)]
-            || self.forward.planes(component, &mut work.forward),
-        );
+        vectorize!(self.forward.planes(component, &mut work.forward));
     }
 
     /// Forward along x, column by column: completes a component of the ligand's transform.
     pub fn columns(&self, component: usize, work: &mut Buffers<T>) {
-        vectorized(
-            #[inline(always)]
-            || self.columns_inline(component, work),
-        );
+        vectorize!(self.columns_inline(component, work));
     }
 
     #[inline(always)]
@@ -292,7 +280,7 @@ impl<T: Real> Transforms<T> {
                         *packet = Packet::of(values);
                     }
                 }
-                // Place mx is that of kx = 0 again: the next line's first value stands there.
+                // Place mx is that of kx = 0 again and holds the next line's first value.
                 let own = down[component..].iter_mut().step_by(rank);
                 let falling = work.lines[..=zero + mx].rchunks_exact(LANES);
                 for (packet, values) in own.zip(falling) {
@@ -306,7 +294,7 @@ impl<T: Real> Transforms<T> {
     }
 }
 
-/// The transform of the ligand, which may lie anyhow within its radius.
+/// The transform of the ligand at any rotation within its radius.
 pub(in crate::engine) fn ligand_forward<T: Real>(plan: &Plan, rank: usize) -> Forward<T> {
     let modes = plan.modes();
     let extent = [0, 1, 2]

@@ -46,7 +46,7 @@ const REAL: usize = 4;
 const MAX_TURNS: usize = 32;
 
 impl Sizes {
-    /// Of an engine, with so many peaks an image that keep `reach` voxels free on each side.
+    /// Of an engine, with `peaks` peaks per image, each of which keeps `reach` voxels free on each side.
     pub fn new<T: Real>(engine: &Transforms<T>, peaks: usize, reach: usize) -> Self {
         let plan = &engine.plan;
         let modes = plan.modes();
@@ -63,10 +63,8 @@ impl Sizes {
             columns: modes.columns.len(),
             modes: modes.count,
             images: engine.readings.len(),
-            longest: modes
-                .columns
-                .iter()
-                .map(|column| column.len())
+            longest: (modes.columns.iter())
+                .map(|column| column.count())
                 .max()
                 .unwrap_or(0),
             peaks,
@@ -81,9 +79,8 @@ impl Sizes {
         self.peaks.min(voxels.div_ceil(of_peak))
     }
 
-    /// Bytes of each buffer that grows with the turns, for one, and of each that grows with the images: the block, its
-    /// rows along z, its columns before the transform along x, the ligand's modes; then the product's columns, its
-    /// planes, the scores, the best of each row, the peaks.
+    /// Bytes per turn: the block, its rows along z, its columns before the transform along x, the ligand's modes. Bytes
+    /// per image: the product's columns, its planes, the scores, the best of each row, the peaks.
     fn bytes(&self) -> ([usize; 4], [usize; 5]) {
         const COMPLEX: usize = 2 * REAL;
         let ([nx, ny, nz], [bx, by, bz]) = (self.grid, self.block);
@@ -290,9 +287,12 @@ fn spectra<T: Real>(engine: &Transforms<T>, units: &[f64]) -> Vec<[f32; 2]> {
     let mut spectra = vec![[0f32; 2]; fields * modes.count];
     for (index, column) in modes.columns.iter().enumerate() {
         for (field, unit) in units.iter().enumerate() {
-            let start = fields * column.start + field * column.len();
+            let start = fields * column.start + field * column.count();
             let values = engine.spectrum(index, field);
-            for (to, from) in spectra[start..start + column.len()].iter_mut().zip(values) {
+            for (to, from) in spectra[start..start + column.count()]
+                .iter_mut()
+                .zip(values)
+            {
                 *to = [
                     (from.re.wide() * unit) as f32,
                     (from.im.wide() * unit) as f32,
@@ -303,8 +303,7 @@ fn spectra<T: Real>(engine: &Transforms<T>, units: &[f64]) -> Vec<[f32; 2]> {
     spectra
 }
 
-/// What one whole number of the spread block stands for in each field: all knots of a field on one point would reach
-/// 2^30.
+/// Value of 1 in the spread block of whole numbers, by field: all knots of a field on one point would reach 2^30.
 fn units<T: Real>(engine: &Transforms<T>) -> Vec<f64> {
     let fields = engine.rank();
     let mut sums = vec![0.0; fields];

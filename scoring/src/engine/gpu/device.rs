@@ -16,7 +16,7 @@ pub enum GpuError {
     /// No adapter, or none of the requested name.
     #[error("no graphics processor{}: the system's Vulkan, Metal or Direct3D 12 driver shows {}", of(.wanted), joined(.found))]
     NoAdapter {
-        /// What [`ADAPTER_VARIABLE`] says.
+        /// Value of [`ADAPTER_VARIABLE`].
         wanted: Option<String>,
         /// Names of the adapters there are.
         found: Vec<String>,
@@ -34,7 +34,7 @@ pub enum GpuError {
     Driver {
         /// The adapter's name.
         adapter: String,
-        /// What the driver says.
+        /// Message of the driver.
         message: String,
     },
 }
@@ -143,7 +143,7 @@ impl GpuDevice {
         }
     }
 
-    /// The first error that has not been noted of.
+    /// Fails if the device has reported an error.
     pub(super) fn check(&self) -> Result<(), GpuError> {
         let failure = self
             .failure

@@ -68,18 +68,33 @@ pub(super) fn source(
     let (mut from, mut to) = ("ping", "pong");
     let mut span = 1;
     for &radix in radices {
-        stage(
-            &mut code,
-            Stage {
-                length,
-                lines,
-                radix,
-                span,
-                from,
-                to,
-            },
-            direction,
+        let part = length / radix;
+        let items = lines * part;
+        let _ = write!(
+            code,
+            "for (var item = lane; item < {items}u; item += {WIDTH}u) {{\n\
+             let line = (item / {part}u) * {length}u;\n\
+             let i = item % {part}u;\n\
+             let k = i % {span}u;\n\
+             let v0 = {from}[line + i];\n"
         );
+        let step = length / (span * radix);
+        for s in 1..radix {
+            let value = format!("{from}[line + i + {}u]", s * part);
+            let _ = if span == 1 {
+                writeln!(code, "let v{s} = {value};")
+            } else {
+                let turn = s * step;
+                writeln!(code, "let v{s} = multiply({value}, twiddle[k * {turn}u]);")
+            };
+        }
+        let next = span * radix;
+        let _ = writeln!(code, "let to = line + (i / {span}u) * {next}u + k;");
+        let values = butterfly(&mut code, radix, direction);
+        for (t, value) in values.into_iter().enumerate() {
+            let _ = writeln!(code, "{to}[to + {}u] = {value};", t * span);
+        }
+        code.push_str("}\nworkgroupBarrier();\n");
         span *= radix;
         std::mem::swap(&mut from, &mut to);
     }
@@ -88,60 +103,6 @@ pub(super) fn source(
         "}}\nfn result(index: u32) -> vec2<f32> {{ return {from}[index]; }}\n"
     );
     code
-}
-
-/// One pass over all lines.
-struct Stage<'a> {
-    length: usize,
-    lines: usize,
-    radix: usize,
-    /// Product of the radices before.
-    span: usize,
-    from: &'a str,
-    to: &'a str,
-}
-
-fn stage(code: &mut String, stage: Stage, direction: Direction) {
-    let Stage {
-        length,
-        lines,
-        radix,
-        span,
-        from,
-        to,
-    } = stage;
-    let part = length / radix;
-    let items = lines * part;
-    let _ = write!(
-        code,
-        "for (var item = lane; item < {items}u; item += {WIDTH}u) {{\n\
-         let line = (item / {part}u) * {length}u;\n\
-         let i = item % {part}u;\n\
-         let k = i % {span}u;\n\
-         let v0 = {from}[line + i];\n"
-    );
-    let step = length / (span * radix);
-    for s in 1..radix {
-        let value = format!("{from}[line + i + {}u]", s * part);
-        let _ = if span == 1 {
-            writeln!(code, "let v{s} = {value};")
-        } else {
-            writeln!(
-                code,
-                "let v{s} = multiply({value}, twiddle[k * {}u]);",
-                s * step
-            )
-        };
-    }
-    let _ = writeln!(
-        code,
-        "let to = line + (i / {span}u) * {}u + k;",
-        span * radix
-    );
-    for (t, value) in butterfly(code, radix, direction).into_iter().enumerate() {
-        let _ = writeln!(code, "{to}[to + {}u] = {value};", t * span);
-    }
-    code.push_str("}\nworkgroupBarrier();\n");
 }
 
 /// The transform of v0 to v(radix - 1): intermediate values go into `code`, the results are returned as expressions.

@@ -31,7 +31,7 @@ pub struct GpuEngine {
     batch: Batch,
     buffers: Buffers,
     stages: Stages,
-    /// Å to cells of the block, per axis, and where the block's centre lies in it.
+    /// Å to cells of the block, per axis, and the block's centre in it.
     scale: [f64; 3],
     center: [f64; 3],
     /// From the axes of the receptor's file to the grid's.
@@ -40,7 +40,7 @@ pub struct GpuEngine {
 
 /// One rotation of the ligand, and which of its images are wanted: turns of the grid that follow it.
 #[derive(Clone, Copy, Debug)]
-pub struct Turn {
+pub struct LigandRotation {
     /// The rotation.
     pub rotation: UnitQuaternion<f64>,
     /// In the order of [`GridTurn::ALL`]; of [`CpuEngine::turns`] alone.
@@ -124,7 +124,7 @@ impl GpuEngine {
     /// [`GpuError::Driver`] where the driver fails.
     pub fn best(
         &self,
-        turns: &[Turn],
+        turns: &[LigandRotation],
         done: &mut dyn FnMut(usize),
     ) -> Result<Vec<GridPeak>, GpuError> {
         let all: Vec<Image> = turns
@@ -168,7 +168,7 @@ impl GpuEngine {
         let mut peaks = Vec::with_capacity(records.len());
         for (records, image) in records.chunks_exact(self.sizes.peaks).zip(&all) {
             let before = peaks.len();
-            // A grid may hold fewer voxels than requested: 0 stands for none, else voxel + 1.
+            // A grid may hold fewer voxels than requested: 0 is none, else voxel + 1.
             let found = records.iter().filter_map(|&[place, bits]| {
                 place.checked_sub(1).map(|voxel| GridPeak {
                     turn: image.turn,
@@ -200,7 +200,7 @@ impl GpuEngine {
     ) -> Result<Vec<f32>, GpuError> {
         let image = turn.index();
         let wanted = GridTurn::ALL.map(|one| one == turn);
-        let turn = Turn {
+        let turn = LigandRotation {
             rotation: *rotation,
             wanted,
         };
@@ -225,7 +225,7 @@ impl GpuEngine {
         rotation: &UnitQuaternion<f64>,
     ) -> Result<Vec<(&'static str, f64)>, GpuError> {
         const REPEATS: usize = 5;
-        let turn = Turn {
+        let turn = LigandRotation {
             rotation: *rotation,
             wanted: [true; GridTurn::ALL.len()],
         };
@@ -241,7 +241,7 @@ impl GpuEngine {
         for stage in 0..self.stages.len() {
             let mut least = f64::INFINITY;
             for _ in 0..REPEATS {
-                // What it works on is there.
+                // The stages before give it its data.
                 let before = self.encode(&turns, &images, stage);
                 self.gpu.wait(self.gpu.queue.submit([before.finish()]))?;
                 let mut encoder = self
@@ -281,8 +281,13 @@ impl GpuEngine {
         batches
     }
 
-    /// The commands of a batch as far as so many stages; its turns and images are on their way.
-    fn encode(&self, turns: &[Turn], images: &[Image], stages: usize) -> wgpu::CommandEncoder {
+    /// The commands of the first `stages` stages of a batch, whose turns and images are written to the card.
+    fn encode(
+        &self,
+        turns: &[LigandRotation],
+        images: &[Image],
+        stages: usize,
+    ) -> wgpu::CommandEncoder {
         let mut rows: Vec<[f32; 4]> = Vec::with_capacity(3 * self.batch.turns);
         let mut table: Vec<[u32; 2]> = Vec::with_capacity(images.len());
         for group in images.chunk_by(|a, b| a.turn == b.turn) {
@@ -319,7 +324,7 @@ impl GpuEngine {
         })
     }
 
-    /// What a buffer holds once everything submitted is done.
+    /// Contents of a buffer once everything submitted is done.
     fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
         let (sender, mapped) = std::sync::mpsc::channel();
         buffer.map_async(wgpu::MapMode::Read, .., move |result| {

@@ -16,7 +16,7 @@ struct Stage {
     name: &'static str,
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
-    /// Workgroups for a batch of so many turns and images.
+    /// Workgroups for a number of turns and images.
     groups: fn(&Sizes, &Lines, usize, usize) -> [usize; 3],
 }
 
@@ -29,7 +29,7 @@ pub(super) struct Stages {
     lines: Lines,
 }
 
-/// What a stage is made of.
+/// The parts of a stage.
 struct Recipe<'a> {
     name: &'static str,
     code: &'static str,
@@ -62,12 +62,12 @@ impl Stages {
         self.stages.len()
     }
 
-    /// What a stage does.
+    /// Name of a stage.
     pub fn name(&self, stage: usize) -> &'static str {
         self.stages[stage].name
     }
 
-    /// Records some of the stages for a batch of so many turns and images.
+    /// Records a range of stages for a number of turns and images.
     pub fn record(
         &self,
         encoder: &mut wgpu::CommandEncoder,
@@ -123,7 +123,7 @@ impl Recipe<'_> {
                 module: &module,
                 entry_point: Some("main"),
                 compilation_options: wgpu::PipelineCompilationOptions {
-                    // Every invocation fills what it reads of a workgroup's memory.
+                    // Every invocation fills the part of a workgroup's memory that it reads.
                     zero_initialize_workgroup_memory: false,
                     ..Default::default()
                 },
@@ -267,7 +267,7 @@ fn inverse_recipes<'a>(sizes: &Sizes, b: &'a Buffers) -> [Recipe<'a>; 4] {
     ]
 }
 
-/// The sizes as WGSL, and what all stages share.
+/// The sizes as WGSL, and declarations of all stages.
 fn header(sizes: &Sizes) -> String {
     let [bx, by, bz] = sizes.block;
     let [mx, my, mz] = sizes.fine;

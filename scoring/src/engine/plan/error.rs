@@ -69,7 +69,7 @@ pub(super) fn check_terms(
             })
         };
         if term.receptor.len() != receptor.len() || term.ligand.len() != ligand.len() {
-            return refuse("does not have one label a knot");
+            return refuse("does not have one label per knot");
         }
         let classes = term.matrix.first().map_or(0, Vec::len);
         if term.matrix.iter().any(|row| row.len() != classes) {

@@ -1,6 +1,6 @@
 //! The frame of the grid: how the receptor is turned in the box.
 //!
-//! The box holds the receptor's bounding box, and the ligand on all sides of it. A receptor that lies askew has a large
+//! The box holds the receptor's bounding box, and the ligand on all sides of it. A receptor that is askew has a large
 //! one. Turned well it needs fewer points, and where its box is as long in y as in z, quarter turns about x share the
 //! ligand's transform among eight rotations instead of four ([`crate::grid_turn`]).
 
@@ -44,11 +44,8 @@ pub(super) fn best_frame(
     ));
     for turned in spiral_set(8 * FRAMES).iter().step_by(8) {
         for frame in [*turned, cycle * turned, cycle * cycle * turned] {
-            let found = cost(&extents.turned(&outermost, frame));
-            if let Some(found) = found
-                && (found.0.total_cmp(&best.0.0))
-                    .then(found.1.total_cmp(&best.0.1))
-                    .is_lt()
+            if let Some(found) = cost(&extents.turned(&outermost, frame))
+                && found < best.0
             {
                 best = (found, Some(frame));
             }

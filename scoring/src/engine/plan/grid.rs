@@ -14,9 +14,10 @@ use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use std::sync::Arc;
 
-/// Where two bodies lie and how far they extend, in Å.
+/// Centres and extents of two bodies, in Å.
+#[derive(Clone, Copy, Debug)]
 pub(super) struct Extents {
-    /// Middle of the receptor's bounding box, which lies along the grid's axes.
+    /// Middle of the receptor's bounding box along the grid's axes.
     pub receptor_center: Vector3<f64>,
     /// Half the receptor's bounding box.
     pub receptor_extent: [f64; 3],
@@ -98,10 +99,7 @@ impl Extents {
     }
 }
 
-/// The modes of such a grid, and the points per axis of the nufft transforms' fine one, `ratio` times as fine.
-///
-/// # Errors
-/// As [`Extents::grid`].
+/// The modes of such a grid, and the points per axis of the transforms' fine one, `ratio` times as fine.
 pub(super) fn modes_at(
     spacing: f64,
     extents: &Extents,
@@ -142,7 +140,7 @@ pub(super) fn window_width(tolerance: f64, dynamic_range: f64, oversampling: f64
 pub(super) struct Widest {
     sum: f64,
     table: Table<4>,
-    /// What that pair earns at most; not 0.
+    /// Largest score of that pair; not 0.
     peak_score: f64,
 }
 

@@ -20,7 +20,7 @@ use crate::kernel::table::Table;
 use crate::kernel::{Band, KernelOptions, ProductKernel, RankingKernel};
 use crate::lifted_axis::{LiftedAxis, RadiusBasis};
 use crate::quantity::Quantity;
-use crate::terms::effect::{ActiveTerm, EffectKernel, Term};
+use crate::terms::effect::{ActiveTerm, EffectKernel, Term, classes};
 use crate::transform::modes::ModeSet;
 use crate::transform::truncation::ball;
 use error::{check_bodies, check_terms, check_tolerance, checked_spacing};
@@ -84,18 +84,17 @@ pub struct Plan {
     axis: LiftedAxis,
     axis_error: f64,
     basis: RadiusBasis,
-    /// Whether grown balls have weights of their own, so that each function of the radius counts twice.
+    /// Whether grown balls have separate weights, so that each function of the radius counts twice.
     layered: bool,
     modes: Arc<ModeSet>,
     spacing: f64,
     fine: [usize; 3],
     width: usize,
     effective_reach: f64,
+    /// Oversampling of the fine grid.
+    ratio: f64,
     frame: UnitQuaternion<f64>,
-    receptor_center: Vector3<f64>,
-    receptor_extent: [f64; 3],
-    ligand_center: Vector3<f64>,
-    ligand_radius: f64,
+    extents: Extents,
 }
 
 /// Decisions of the plan.
@@ -174,28 +173,28 @@ impl Plan {
 
     /// Middle of the receptor's bounding box along the grid's axes, in the receptor's file, Å.
     pub fn receptor_center(&self) -> Vector3<f64> {
-        self.receptor_center
+        self.extents.receptor_center
     }
 
     /// Half the receptor's bounding box along the grid's axes, or more, Å.
     pub fn receptor_extent(&self) -> [f64; 3] {
-        self.receptor_extent
+        self.extents.receptor_extent
     }
 
     /// Middle of the ligand's bounding box, Å.
     pub fn ligand_center(&self) -> Vector3<f64> {
-        self.ligand_center
+        self.extents.ligand_center
     }
 
     /// Distance of the farthest ligand knot from it, Å.
     pub fn ligand_radius(&self) -> f64 {
-        self.ligand_radius
+        self.extents.ligand_radius
     }
 
-    /// Whether a ligand lies within the room that the plan gives it.
+    /// Whether a ligand is within the room of the plan.
     pub(crate) fn holds_ligand(&self, ligand: &Knots) -> bool {
-        let distance = |x: &[f64; 3]| (Vector3::from(*x) - self.ligand_center).norm();
-        let room = self.ligand_radius * (1.0 + 1e-9) + 1e-9 * self.spacing;
+        let distance = |x: &[f64; 3]| (Vector3::from(*x) - self.ligand_center()).norm();
+        let room = self.ligand_radius() * (1.0 + 1e-9) + 1e-9 * self.spacing;
         ligand.centers.iter().all(|x| distance(x) <= room)
     }
 
@@ -239,7 +238,7 @@ impl Plan {
     /// Plans the correlation of two sets of knots by the product kernel (`options.kernel.trim` has no meaning there).
     ///
     /// Under [`Band::LowPass`] the modes below the stop frequency are all there is. Under [`Band::Whole`] the grid cuts
-    /// the kernel sharply at 1 / (2 spacing), by default where less than the tolerance lies beyond.
+    /// the kernel sharply at 1 / (2 spacing), by default where less than the tolerance is beyond.
     ///
     /// # Errors
     /// As [`Plan::new`].
@@ -342,11 +341,9 @@ impl Plan {
             fine,
             width,
             effective_reach,
+            ratio,
             frame: UnitQuaternion::identity(),
-            receptor_center: extents.receptor_center,
-            receptor_extent: extents.receptor_extent,
-            ligand_center: extents.ligand_center,
-            ligand_radius: extents.ligand_radius,
+            extents,
             kernel,
             effects,
         })
@@ -359,9 +356,8 @@ impl Plan {
     /// [`PlanError`] on a spacing that gives no grid.
     pub fn with_spacing(&self, spacing: f64) -> Result<Self, PlanError> {
         checked_spacing(Some(spacing))?;
-        let ratio = self.oversampling();
-        let reach = self.effective_reach;
-        let (modes, fine) = modes_at(spacing, &self.extents(), reach, self.width, ratio)?;
+        let (reach, width) = (self.effective_reach, self.width);
+        let (modes, fine) = modes_at(spacing, &self.extents, reach, width, self.ratio)?;
         Ok(Self {
             options: EngineOptions {
                 spacing: Some(spacing),
@@ -374,23 +370,6 @@ impl Plan {
         })
     }
 
-    fn oversampling(&self) -> f64 {
-        let band = match &self.pair {
-            PairKernel::Lifted => None,
-            PairKernel::Product(product) => Some(product.band()),
-        };
-        oversampling(self.options.tolerance, band)
-    }
-
-    fn extents(&self) -> Extents {
-        Extents {
-            receptor_center: self.receptor_center,
-            receptor_extent: self.receptor_extent,
-            ligand_center: self.ligand_center,
-            ligand_radius: self.ligand_radius,
-        }
-    }
-
     /// The same correlation on a grid whose axes are turned to where the receptor, that of the plan, needs the fewest
     /// points. Poses stay in the frames of the files.
     ///
@@ -399,18 +378,16 @@ impl Plan {
     pub fn fitted(&self, receptor: &Knots) -> Result<Self, PlanError> {
         let (reach, width, spacing) = (self.effective_reach, self.width, self.spacing);
         let size = |extents: &Extents| extents.grid(reach, width, spacing).ok();
-        let Some(frame) = best_frame(receptor, &self.extents(), size) else {
+        let Some(frame) = best_frame(receptor, &self.extents, size) else {
             return Ok(self.clone());
         };
-        let extents = self.extents().turned(&receptor.centers, frame);
-        let ratio = self.oversampling();
-        let (modes, fine) = modes_at(spacing, &extents, reach, width, ratio)?;
+        let extents = self.extents.turned(&receptor.centers, frame);
+        let (modes, fine) = modes_at(spacing, &extents, reach, width, self.ratio)?;
         Ok(Self {
             frame,
             modes,
             fine,
-            receptor_center: extents.receptor_center,
-            receptor_extent: extents.receptor_extent,
+            extents,
             ..self.clone()
         })
     }
@@ -418,53 +395,39 @@ impl Plan {
     /// Number of functions in which the ligand meets the receptor: those of the lifted axis, and one for each class of
     /// a further term.
     pub fn functions(&self) -> usize {
-        let classes = self.effects.iter().map(|ActiveTerm { term, .. }| {
-            let mut seen: Vec<usize> = term
-                .ligand
-                .iter()
-                .filter(|label| label.value != 0.0)
-                .map(|label| label.class)
-                .collect();
-            seen.sort_unstable();
-            seen.dedup();
-            seen.len()
-        });
+        let terms = self.effects.iter();
+        let classes = terms.map(|active| classes(&active.term.ligand).len());
         self.shape_functions().1 + classes.sum::<usize>()
     }
 
     /// Functions of shape on the receptor's and on the ligand's side: those of the radius, for each layer where grown
-    /// balls have weights of their own.
+    /// balls have separate weights.
     pub fn shape_functions(&self) -> (usize, usize) {
-        let (a, b) = self.basis.sizes(&self.axis);
         let layers = if self.layered { LAYERS.len() } else { 1 };
-        (layers * a, layers * b)
+        let size = |side| layers * self.basis.size(&self.axis, side);
+        (size(0), size(1))
     }
 
-    /// The layer of a function of shape, of `size` functions of the radius, and that function.
-    fn layer(&self, function: usize, size: usize) -> (Option<Body>, usize) {
+    /// The layer of a function of shape of a side (0: the receptor), and its function of the radius.
+    fn layer(&self, function: usize, side: usize) -> (Option<Body>, usize) {
         if !self.layered {
             return (None, function);
         }
-        (
-            LAYERS.get(function / size.max(1)).copied(),
-            function % size.max(1),
-        )
+        let size = self.basis.size(&self.axis, side).max(1);
+        (LAYERS.get(function / size).copied(), function % size)
     }
 
-    /// Weight of a receptor's knot times the value of a function of shape at its radius.
-    pub(crate) fn receptor_value(&self, receptor: &Knots, function: usize, knot: usize) -> f64 {
-        let (layer, a) = self.layer(function, self.basis.sizes(&self.axis).0);
-        let value = self
-            .basis
-            .receptor_value(&self.axis, a, receptor.radii[knot]);
-        value * weight(receptor, layer, knot)
-    }
-
-    /// The same of a ligand's knot.
-    pub(crate) fn ligand_value(&self, ligand: &Knots, function: usize, knot: usize) -> f64 {
-        let (layer, b) = self.layer(function, self.basis.sizes(&self.axis).1);
-        let value = self.basis.ligand_value(&self.axis, b, ligand.radii[knot]);
-        weight(ligand, layer, knot) * value
+    /// Weight of a knot of a side times the value of a function of shape at its radius.
+    pub(crate) fn shape_value(
+        &self,
+        knots: &Knots,
+        side: usize,
+        function: usize,
+        knot: usize,
+    ) -> f64 {
+        let (layer, index) = self.layer(function, side);
+        let value = self.basis.value(&self.axis, side, index, knots.radii[knot]);
+        value * weight(knots, layer, knot)
     }
 
     /// The same correlation with at most `most` modes, conjugates counted, those of lowest frequency: the grid stays,
@@ -478,11 +441,9 @@ impl Plan {
 
     /// Indices of the knots that the planned correlation cannot resolve.
     ///
-    /// The low-passed kernel scores every pair, but of balls much smaller than the resolution it sees little more than
-    /// points: the rest of their overlap falls like (radius / resolution)^3. The exact sum has the same low-pass, so no
-    /// error between the two shows it. These knots have less than a tenth of the overlap left if two of them coincide
-    /// (radii of 1.5 to 1.9 Å at a resolution of 4.5 Å have nine tenths or more). Without a low-pass their radius is
-    /// below the grid spacing.
+    /// The low-pass leaves less than a tenth of the overlap of two such coincident balls, which falls like (radius /
+    /// resolution)^3. (It leaves nine tenths for radii of 1.5 to 1.9 Å at a resolution of 4.5 Å.) The exact sum has the
+    /// same low-pass, so no error shows it. Without a low-pass their radius is below the grid spacing.
     pub fn unresolved(&self, knots: &Knots) -> Vec<usize> {
         let is_lost = |radius: f64| match &self.pair {
             PairKernel::Product(kernel) if kernel.band() == Band::Whole => radius < self.spacing,
@@ -505,8 +466,7 @@ impl Plan {
                     .coupling(&self.kernel, &self.axis, fold, (a, b), w_max)
             }
             PairKernel::Product(product) => {
-                let sizes = self.basis.sizes(&self.axis);
-                let ((of_a, a), (of_b, b)) = (self.layer(a, sizes.0), self.layer(b, sizes.1));
+                let ((of_a, a), (of_b, b)) = (self.layer(a, 0), self.layer(b, 1));
                 let layers = of_a.zip(of_b);
                 self.basis
                     .product_coupling(product, fold, (a, b), layers, w_max)
@@ -515,29 +475,24 @@ impl Plan {
     }
 }
 
-/// The distinct radii of both bodies, Å, each from the smallest to the largest.
-struct Radii {
-    receptor: Vec<f64>,
-    ligand: Vec<f64>,
-}
+/// The distinct radii of the receptor and of the ligand, Å, each from the smallest to the largest.
+struct Radii([Vec<f64>; 2]);
 
 impl Radii {
     fn of(receptor: &Knots, ligand: &Knots) -> Self {
-        Self {
-            receptor: receptor.radius_classes().0,
-            ligand: ligand.radius_classes().0,
-        }
+        Self([receptor, ligand].map(|knots| knots.radius_classes().0))
     }
 
     /// The smallest radius of the receptor and of the ligand, then the largest; zeros where there is none.
     fn ends(&self) -> [f64; 4] {
-        let end = |radius: Option<&f64>| radius.copied().unwrap_or_default();
-        [
-            end(self.receptor.first()),
-            end(self.ligand.first()),
-            end(self.receptor.last()),
-            end(self.ligand.last()),
-        ]
+        let [receptor, ligand] = &self.0;
+        let ends = [
+            receptor.first(),
+            ligand.first(),
+            receptor.last(),
+            ligand.last(),
+        ];
+        ends.map(|radius| radius.copied().unwrap_or_default())
     }
 
     /// The smallest and the largest sum of a receptor's and a ligand's radius.
@@ -546,8 +501,8 @@ impl Radii {
         (r_low + s_low, r_high + s_high)
     }
 
-    /// The lifted axis, how radii meet it, and the largest relative error of that, `tolerance` at most. A product
-    /// kernel, whose frequencies end at `cut` per Å, has no use for the axis: that is the mean alone then.
+    /// The lifted axis, the basis of the radii, and its largest relative error, `tolerance` at most. A product kernel,
+    /// whose frequencies end at `cut` per Å, has no use for the axis, which is the mean alone then.
     fn meet(
         self,
         kernel: &RankingKernel,
@@ -558,12 +513,11 @@ impl Radii {
         match pair {
             PairKernel::Lifted => {
                 let (axis, error) = LiftedAxis::for_tolerance(kernel, tolerance);
-                let basis = RadiusBasis::choose(&axis, self.receptor, self.ligand);
+                let basis = RadiusBasis::choose(&axis, self.0);
                 (axis, basis, error)
             }
             PairKernel::Product(product) => {
-                let (basis, error) =
-                    RadiusBasis::for_product(product, self.receptor, self.ligand, cut, tolerance);
+                let (basis, error) = RadiusBasis::for_product(product, self.0, cut, tolerance);
                 (LiftedAxis::new(kernel, 0), basis, error)
             }
         }

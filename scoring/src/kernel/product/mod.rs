@@ -6,8 +6,8 @@
 //! (psi_a * psi_b)(d) = integral of psi(|x| / a) psi(|x - d| / b) dx, in Å^3, with the transform a^3 b^3 psi^(a w)
 //! psi^(b w),
 //!
-//! and not the lifted cone psi(d / (a + b)): two functions of the same two balls, which must not be compared with each
-//! other. Only the product kernel has the volume of two spheres' lens as its limit for alpha -> infinity.
+//! and not the lifted cone psi(d / (a + b)): their scores must not be compared. The limit of the product kernel for
+//! alpha -> infinity is the volume of two spheres' lens.
 //!
 //! # The double skin
 //!
@@ -17,16 +17,14 @@
 //!
 //! -lambda^2 (psi_r * psi_s) + lambda [(psi_{r+r0} * psi_s) + (psi_r * psi_{s+r0})] - (psi_{r+r0} * psi_{s+r0}).
 //!
-//! The slices are therefore: 0, both solids as they are; 1, the *mean* of growing either one; 2, both grown. With them
-//! the score is -lambda^2 g_0 + 2 lambda g_1 - g_2, the same weights as those of the lifted kernel, for which growing
-//! either body is the same.
+//! The slices are therefore: 0, both solids as they are; 1, the *mean* of growing either one; 2, both grown. The score
+//! is -lambda^2 g_0 + 2 lambda g_1 - g_2, with the weights of the lifted kernel.
 //!
 //! # Two bands
 //!
-//! [`Band::Whole`] is the kernel as it stands, exactly 0 beyond r + s + 2 r0. [`Band::LowPass`] multiplies its
-//! transform by the ranking kernel's low-pass W(|w|): it is then exactly band-limited, and rings in space. It is not
-//! windowed, since a window over pairs is no product of two bodies' transforms, and so beyond a rasteriser. The trim
-//! along the lifted axis has no meaning here.
+//! [`Band::Whole`] is the kernel itself, exactly 0 beyond r + s + 2 r0. [`Band::LowPass`] multiplies its transform by
+//! the ranking kernel's low-pass W(|w|): it is then exactly band-limited, and rings in space. It has no window, which
+//! would be no product of two bodies' transforms, and no trim along the lifted axis.
 
 mod pairs;
 pub(crate) mod tail_integral;
@@ -69,11 +67,11 @@ pub enum Body {
     DoubleSkin,
 }
 
-/// The functions of a body whose grown balls have weights of their own: one weight does not serve the double skin.
+/// The functions of a body whose grown balls have separate weights.
 pub const LAYERS: [Body; 2] = [Body::Solid, Body::Grown];
 
-/// What a fold of the slices is as a sum of products: receptor's function, ligand's function, factor. Derivatives by
-/// the offset have none: they are taken along the lifted axis, which the product kernel lacks.
+/// A quantity as a sum of products: receptor's function, ligand's function, factor. Derivatives by the offset have none:
+/// they are taken along the lifted axis, which the product kernel lacks.
 pub fn factors(fold: Quantity) -> &'static [(Body, Body, f64)] {
     use Body::{DoubleSkin, Grown, Solid};
     match fold {

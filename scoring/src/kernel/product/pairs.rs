@@ -1,5 +1,4 @@
-//! One pair of radii of the product kernel: its reach, its table over distance, and what its modes hold beyond a
-//! frequency.
+//! One pair of radii of the product kernel: its reach, its table over distance, and its modes beyond a frequency.
 
 use super::LAYERS;
 use super::{Band, ProductKernel};
@@ -100,16 +99,16 @@ impl ProductKernel {
     /// Tables over distance of all pairs of a radius of `receptor` and one of `ligand`: `[receptor][ligand]`.
     ///
     /// Lanes are both balls as they are, the receptor's grown, the ligand's grown, both grown; in the unit of volumes.
-    ///
-    /// Under a low-pass they are sums over frequencies, whose waves all pairs share.
     pub fn layer_tables(&self, receptor: &[f64], ligand: &[f64]) -> Vec<Vec<Table<4>>> {
         match self.band {
             // Quadratures are exact and slow.
             Band::Whole if receptor.len() * ligand.len() <= MAX_QUADRATURES => {
-                rows(receptor, ligand, |r, s| {
+                let table = |r: f64, s: f64| {
                     let panel = r.min(s) / (16.0 + self.bump.alpha().min(1e3));
                     Table::fit(self.reach(r, s), panel, |d| self.layer_overlaps(d, r, s))
-                })
+                };
+                let row = |&r: &f64| ligand.iter().map(|&s| table(r, s)).collect();
+                receptor.iter().map(row).collect()
             }
             _ => self.layer_waves(receptor, ligand),
         }
@@ -192,12 +191,6 @@ fn layer_sums(waves: &[f64], a: &[[f64; 2]], b: &[[f64; 2]]) -> [f64; 4] {
         sums[3] += far * other_grown;
     }
     sums
-}
-
-/// Something of all pairs of radii.
-fn rows<T>(receptor: &[f64], ligand: &[f64], of: impl Fn(f64, f64) -> T) -> Vec<Vec<T>> {
-    let row = |&r: &f64| ligand.iter().map(|&s| of(r, s)).collect();
-    receptor.iter().map(row).collect()
 }
 
 /// Largest value of the score kernel in a pair's table, and the distance beyond which it stays below `share` of that.

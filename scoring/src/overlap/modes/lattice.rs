@@ -15,7 +15,7 @@ pub(super) struct Entry {
     pub k: usize,
     /// |k|^2.
     pub shell: usize,
-    /// How often +kx and -kx count: 2 for a mode that stands for its conjugate too, 0 for one that is not there.
+    /// Counts of +kx and -kx: 2 for a mode and its conjugate, 0 for one that is not there.
     pub counts: [f64; 2],
 }
 
@@ -80,7 +80,7 @@ impl Lattice {
                 block
             })
             .collect();
-        let ks = blocks.iter().map(|block| root(block.end - 1));
+        let ks = blocks.iter().map(|block| (block.end - 1).isqrt());
         Self {
             length,
             limit: ks.max().unwrap_or(0),
@@ -108,7 +108,7 @@ impl Lattice {
 impl Block {
     /// The shells of a range.
     fn new(shells: Range<usize>) -> Self {
-        let limit = root(shells.end - 1) as i32;
+        let limit = (shells.end - 1).isqrt() as i32;
         let mut block = Self {
             end: shells.end,
             ..Self::default()
@@ -158,11 +158,6 @@ fn counts(limit: usize) -> Vec<usize> {
     counts
 }
 
-/// Largest integer whose square is at most `square`.
-fn root(square: usize) -> usize {
-    square.isqrt()
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -172,7 +167,7 @@ mod tests {
         for most in [1, 6, 7, 33, 100, 4096, 20_000] {
             let lattice = Lattice::new(1.0, most);
             let shells = lattice.shells();
-            let limit = root(shells - 1) as i32;
+            let limit = (shells - 1).isqrt() as i32;
             let mut points = 0;
             for x in -limit..=limit {
                 for y in -limit..=limit {

@@ -1,12 +1,12 @@
-//! Overlap energy by Fourier modes (B&I eq. 50), with a bound on what the modes left out can add.
+//! Overlap energy by Fourier modes (B&I eq. 50), with a bound on the modes left out.
 //!
 //! In a cube of edge L that holds both bodies wherever they meet, with f^ the transform of a body's summed bumps at its
 //! pose,
 //!
 //! E = L^-3 sum over w of f_A^(w) conj(f_B^(w)).
 //!
-//! Body A's transform is computed once. That of body B is summed at each pose, O(modes x balls of B), which gives energy
-//! and force; three more sums give the torque.
+//! Body A's transform is computed once, that of body B at each pose, O(modes x balls of B); three more sums give the
+//! torque.
 //!
 //! # Bounds
 //!
@@ -14,9 +14,7 @@
 //! these modes, is the self-overlap of the body (a sum over pairs) less the energy in the modes kept, which is known at
 //! every pose. The error of the pair kernel is added to T. The rounding bound counts all roundings of phases, amplitudes
 //! and sums as if they were in phase. So [`ModesOverlap::certifies_hit`] is never wrong: bumps with weights that are not
-//! negative and have an energy above 0 meet.
-//!
-//! An energy below the bounds shows nothing: modes certify a hit and never a miss.
+//! negative and have an energy above 0 meet. Modes never certify a miss.
 
 mod lattice;
 mod spectrum;
@@ -28,7 +26,8 @@ pub use sum::{ModesOverlap, ModesSum, ModesWorkspace};
 
 use super::{Accumulator, PairOverlap, WeightedBall};
 use crate::se3::Pose;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
+use knotdock_structures::Error;
 use lattice::Lattice;
 use nalgebra::{Rotation3, Vector3};
 use spectrum::{Body, Phases, Sums, Transform};
@@ -38,25 +37,6 @@ use std::f64::consts::PI;
 /// on the machine of [`super::pairs_nanoseconds`].
 const MODE_BALL: f64 = 1.2;
 
-/// Balls that no modes can be made of.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-pub enum OverlapModesError {
-    /// A body has no ball.
-    #[error("body {0} has no balls; give it at least one")]
-    Empty(char),
-    /// A centre or weight is not finite, or a radius is not above zero.
-    #[error("ball {index} of body {body} needs a finite centre and weight and a radius above zero")]
-    Ball {
-        /// A or B.
-        body: char,
-        /// Its place in the list, from 0.
-        index: usize,
-    },
-    /// The margin is negative or not finite.
-    #[error("the margin must be a finite number, 0 or above")]
-    Margin,
-}
-
 /// The modes of two bodies, ready for one pose at a time.
 #[derive(Clone, Debug)]
 pub struct OverlapModes {
@@ -65,13 +45,13 @@ pub struct OverlapModes {
     b: Body,
     /// By block of shells: transform of A, smoothed, at +k and -k of each entry, over the volume.
     spectra: Vec<Vec<[[f64; 2]; 2]>>,
-    /// Energy of A's function, smoothed, beyond so many blocks.
+    /// Energy of A's function, smoothed, beyond each number of blocks.
     tails_a: Vec<f64>,
     /// Self-overlap of B and its error.
     norm_b: [f64; 2],
-    /// Bound of all roundings of so many blocks.
+    /// Bound of all roundings of each number of blocks.
     rounding: Vec<f64>,
-    /// Bound of the rounding of B's own energy in so many blocks.
+    /// Bound of the rounding of B's own energy in each number of blocks.
     rounding_b: Vec<f64>,
     not_negative: bool,
     margin: f64,
@@ -82,17 +62,17 @@ pub struct OverlapModes {
 impl OverlapModes {
     /// The modes of two ball sets: the lowest, at most `most` of them, conjugates counted.
     ///
-    /// Takes O(n^2) for the self-overlap of each body and O(modes x balls of A). Memory: 8 bytes a ball and shell, of
+    /// Takes O(n^2) for the self-overlap of each body and O(modes x balls of A). Memory: 8 bytes per ball and shell, of
     /// which there are about 0.4 `most`^(2/3).
     ///
     /// # Errors
-    /// [`OverlapModesError`] on balls that have no transform.
+    /// [`Error`] on a body without balls, or a ball without a finite centre and weight and a radius above zero.
     pub fn new(
         kernel: &PairOverlap,
         a: &[WeightedBall],
         b: &[WeightedBall],
         most: usize,
-    ) -> Result<Self, OverlapModesError> {
+    ) -> Result<Self, Error> {
         Self::with_margin(kernel, a, b, most, 0.0)
     }
 
@@ -108,11 +88,13 @@ impl OverlapModes {
         b: &[WeightedBall],
         most: usize,
         margin: f64,
-    ) -> Result<Self, OverlapModesError> {
+    ) -> Result<Self, Error> {
         check('A', a)?;
         check('B', b)?;
         if !(margin.is_finite() && margin >= 0.0) {
-            return Err(OverlapModesError::Margin);
+            return Err(Error::input(
+                "the margin must be a finite number, 0 or above",
+            ));
         }
         let ((_, radius_a), (_, radius_b)) = (Body::extent(a), Body::extent(b));
         let reach = radius_a + radius_b + margin;
@@ -144,22 +126,14 @@ impl OverlapModes {
     fn transform_a(&mut self, [norm, error]: [f64; 2], smoothing: &Smoothing) {
         let volume = self.lattice.length.powi(3);
         let mut phases = Phases::new(&self.a, &self.lattice);
-        vectorized(
-            #[inline(always)]
-            || {
-                let middle = Vector3::zeros();
-                phases.place(&self.a, &self.lattice, &Rotation3::identity(), &middle);
-            },
-        );
+        let (turn, middle) = (Rotation3::identity(), Vector3::zeros());
+        vectorize!(phases.place(&self.a, &self.lattice, &turn, &middle));
         let mut sums: Vec<Sums> = vec![[0.0; 4]; self.lattice.widest()];
         let (mut energy, mut rounding_a) = (0.0, 0.0);
         let (mut rounding, mut rounding_b) = (0.0, 0.0);
         self.tails_a = vec![norm + error];
         for block in &self.lattice.blocks {
-            vectorized(
-                #[inline(always)]
-                || phases.gather(&self.a, block, None, &mut sums),
-            );
+            vectorize!(phases.gather(&self.a, block, None, &mut sums));
             let mut spectrum = Vec::with_capacity(block.entries.len());
             for (entry, sums) in block.entries.iter().zip(&sums) {
                 let values = both_signs(sums);
@@ -228,7 +202,7 @@ fn both_signs([cr, ci, sr, si]: &Sums) -> [[f64; 2]; 2] {
     [[cr + si, ci - sr], [cr - si, ci + sr]]
 }
 
-/// What a margin does to A's transform: psi^(D |w|) / psi^(0).
+/// Factors of a margin on A's transform: psi^(D |w|) / psi^(0).
 struct Smoothing {
     margin: f64,
     volume: f64,
@@ -268,11 +242,8 @@ impl Smoothing {
 
 /// Bound of |psi^(q)| / psi^(0) from q on, for a bump of any exponent with integral `volume`.
 ///
-/// A bump is a mean of sharp balls of radius up to 1. The transform of a ball of radius rho is at most
-///
-/// 4 pi rho^3 (1 + z) / z^3, z = 2 pi rho q.
-///
-/// It is largest for rho = 1.
+/// A bump is a mean of sharp balls of radius rho up to 1, whose transforms are at most 4 pi rho^3 (1 + z) / z^3 with
+/// z = 2 pi rho q: largest for rho = 1.
 fn falling_bound(q: f64, volume: f64) -> f64 {
     let z = 2.0 * PI * q;
     (4.0 * PI * (1.0 + z) / (z * z * z) / volume).min(1.0)
@@ -297,9 +268,11 @@ fn self_overlap(kernel: &PairOverlap, balls: &[WeightedBall]) -> [f64; 2] {
     [sum.sum().energy, (2.0 * kernel.error() + 1e-12) * most]
 }
 
-fn check(body: char, balls: &[WeightedBall]) -> Result<(), OverlapModesError> {
+fn check(body: char, balls: &[WeightedBall]) -> Result<(), Error> {
     if balls.is_empty() {
-        return Err(OverlapModesError::Empty(body));
+        return Err(Error::input(format!(
+            "body {body} has no balls; give it at least one"
+        )));
     }
     let good = |ball: &WeightedBall| {
         ball.center.iter().all(|x| x.is_finite())
@@ -308,7 +281,9 @@ fn check(body: char, balls: &[WeightedBall]) -> Result<(), OverlapModesError> {
             && ball.radius > 0.0
     };
     match balls.iter().position(|ball| !good(ball)) {
-        Some(index) => Err(OverlapModesError::Ball { body, index }),
+        Some(index) => Err(Error::input(format!(
+            "ball {index} of body {body} needs a finite centre and weight and a radius above zero"
+        ))),
         None => Ok(()),
     }
 }

@@ -1,10 +1,10 @@
-//! The sum over modes at one pose, block by block, with the bound of what is left.
+//! The sum over modes at one pose, block by block, with the bound of the rest.
 
 use super::lattice::{Entry, Lattice};
 use super::spectrum::{Body, Phases, Sums};
 use super::{OverlapModes, both_signs};
 use crate::se3::Pose;
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 
@@ -28,7 +28,7 @@ impl ModesWorkspace {
     }
 }
 
-/// Overlap energy from some modes, with its bounds: the energy of all modes lies within `tail + rounding` of `energy`.
+/// Overlap energy from some modes, with its bounds: the energy of all modes is within `tail + rounding` of `energy`.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ModesOverlap {
     /// The sum over the modes so far.
@@ -81,12 +81,9 @@ impl<'a> ModesSum<'a> {
         let together = place.norm() < modes.reach;
         if together {
             let rotation = pose.rotation.to_rotation_matrix();
-            vectorized(
-                #[inline(always)]
-                || {
-                    work.phases
-                        .place(&modes.b, &modes.lattice, &rotation, &place);
-                },
+            vectorize!(
+                work.phases
+                    .place(&modes.b, &modes.lattice, &rotation, &place)
             );
         }
         let mut sum = Self {
@@ -143,44 +140,39 @@ impl<'a> ModesSum<'a> {
         let radians = 2.0 * PI / modes.lattice.length;
         let about = self.about;
         let mut total = Totals::default();
-        vectorized(
-            #[inline(always)]
-            || {
-                let ModesWorkspace {
-                    phases,
-                    sums,
-                    turned,
-                } = &mut **work;
-                phases.gather(&modes.b, block, None, sums);
-                total = Totals::default();
+        vectorize!({
+            let ModesWorkspace {
+                phases,
+                sums,
+                turned,
+            } = &mut **work;
+            phases.gather(&modes.b, block, None, sums);
+            total = Totals::default();
+            for column in &block.columns {
+                let range = column.entries.clone();
+                let along = [f64::from(column.ky), column.kz as f64];
+                let entries = block.entries[range.clone()].iter();
+                for ((entry, sums), a) in entries.zip(&sums[range.clone()]).zip(&spectrum[range]) {
+                    total.add(entry, along, sums, a);
+                }
+            }
+            if about.is_none() {
+                return;
+            }
+            for axis in 0..3 {
+                phases.gather(&modes.b, block, Some(axis), turned);
                 for column in &block.columns {
                     let range = column.entries.clone();
                     let along = [f64::from(column.ky), column.kz as f64];
                     let entries = block.entries[range.clone()].iter();
-                    for ((entry, sums), a) in
-                        entries.zip(&sums[range.clone()]).zip(&spectrum[range])
+                    for ((entry, turned), a) in
+                        entries.zip(&turned[range.clone()]).zip(&spectrum[range])
                     {
-                        total.add(entry, along, sums, a);
+                        total.turn(axis, entry, along, turned, a);
                     }
                 }
-                if about.is_none() {
-                    return;
-                }
-                for axis in 0..3 {
-                    phases.gather(&modes.b, block, Some(axis), turned);
-                    for column in &block.columns {
-                        let range = column.entries.clone();
-                        let along = [f64::from(column.ky), column.kz as f64];
-                        let entries = block.entries[range.clone()].iter();
-                        for ((entry, turned), a) in
-                            entries.zip(&turned[range.clone()]).zip(&spectrum[range])
-                        {
-                            total.turn(axis, entry, along, turned, a);
-                        }
-                    }
-                }
-            },
-        );
+            }
+        });
         let volume = modes.lattice.length.powi(3);
         self.energy_b += total.energy_b / volume;
         self.sum.energy += total.energy;

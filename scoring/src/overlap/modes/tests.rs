@@ -232,21 +232,18 @@ fn negative_weights_certify_nothing_and_bad_balls_are_refused() {
     assert!(sum.energy > 0.0 && !sum.certifies_hit());
     let good = [ball(1.0, 1.0)];
     let new = |a: &[WeightedBall], b: &[WeightedBall], margin| {
-        OverlapModes::with_margin(&KERNEL, a, b, 10, margin).err()
+        let refused = OverlapModes::with_margin(&KERNEL, a, b, 10, margin).err();
+        refused.unwrap().to_string()
     };
-    assert_eq!(new(&[], &good, 0.0), Some(OverlapModesError::Empty('A')));
-    let bad = OverlapModesError::Ball {
-        body: 'B',
-        index: 1,
-    };
+    assert!(new(&[], &good, 0.0).starts_with("body A has no balls"));
     for ball in [
         ball(f64::NAN, 1.0),
         ball(1.0, 0.0),
         ball(1.0, f64::INFINITY),
     ] {
-        assert_eq!(new(&good, &[good[0], ball], 0.0), Some(bad));
+        assert!(new(&good, &[good[0], ball], 0.0).starts_with("ball 1 of body B"));
     }
-    assert_eq!(new(&good, &good, -1.0), Some(OverlapModesError::Margin));
+    assert!(new(&good, &good, -1.0).starts_with("the margin"));
 }
 
 /// Sharp balls have modes too, and wide tails.

@@ -8,7 +8,7 @@
 //! with a minus.
 //!
 //! The filter of the ranking kernel is applied to k (`kernel::radial_filter`). So k ends at the same reach
-//! and the same frequency as shape, and an effect needs no grid, modes or cell list of its own. In the Fourier domain
+//! and the same frequency as shape, and an effect needs no further grid, modes or cell list. In the Fourier domain
 //! it adds one function of the ligand for each class. The engine compresses these together with those of shape. An
 //! effect that is off adds none.
 //!
@@ -28,6 +28,7 @@ pub use kernel::EffectKernel;
 use knotdock_structures::Knots;
 use restraint::ResidueRole;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 /// The enumeration of the effects, their order and their definitions, from one line each.
 macro_rules! effects {
@@ -132,8 +133,14 @@ impl EffectInputs<'_> {
 pub struct Label {
     /// Class, an index into the matrix.
     pub class: usize,
-    /// Value: a charge in e, or 1; 0 for a knot that does not count.
+    /// Value: a charge in e, or 1; 0 if the knot does not count.
     pub value: f64,
+}
+
+/// The classes of the labels that count, each once.
+pub(crate) fn classes(labels: &[Label]) -> BTreeSet<usize> {
+    let counting = labels.iter().filter(|label| label.value != 0.0);
+    counting.map(|label| label.class).collect()
 }
 
 /// Radial function of a term before it is filtered: smooth, even, and 0 from its support on.

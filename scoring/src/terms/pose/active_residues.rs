@@ -8,8 +8,7 @@
 //! should. So this term counts residues.
 
 use super::bodies::{Sides, positions};
-use super::{TermDefinition, UNRELAXED};
-use crate::se3::Pose;
+use super::{PoseTerm, TermDefinition, UNRELAXED};
 use knotdock_structures::Knots;
 
 /// Definition of the term.
@@ -21,71 +20,40 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     is_shown_always: true,
     reads: "residues",
     count: |inputs| {
-        [0, 1].map(|side| {
-            inputs
-                .active_residues
-                .iter()
-                .map(|set| set[side].len())
-                .sum()
-        })
+        let sets = inputs.active_residues;
+        [0, 1].map(|side| sets.iter().map(|set| set[side].len()).sum())
     },
     applies: |inputs| !inputs.active_residues.is_empty(),
-    build: |inputs, weight| {
-        let [receptor, ligand] = inputs.bodies;
-        let sets = inputs.active_residues;
-        let term = ActiveResidues::new(receptor, ligand, sets, weight);
-        Box::new(move |pose, _| term.score(pose))
-    },
+    build: |inputs, weight| term(inputs.bodies, inputs.active_residues, weight),
 };
 
 /// Active residues of receptor and ligand, each as the indices of its knots.
 pub type Residues = [Vec<Vec<usize>>; 2];
 
-/// Two bodies prepared for counting the active residues in contact.
-struct ActiveResidues {
-    /// Sets of residues of receptor and ligand, each residue as the positions of its atoms (Å).
-    sets: Vec<[Vec<Positions>; 2]>,
-    sides: Sides,
-    weight: f64,
-}
-
-/// Positions of the atoms of a residue (Å).
-type Positions = Vec<[f64; 3]>;
-
-impl ActiveResidues {
-    /// Prepares two sets of knots. `weight` is the score of a pose in which all residues of one set are in contact.
-    fn new(receptor: &Knots, ligand: &Knots, sets: &[Residues], weight: f64) -> Self {
-        let of = |knots: &Knots, residues: &[Vec<usize>]| -> Vec<Positions> {
-            residues
-                .iter()
-                .map(|residue| positions(knots, residue))
-                .collect()
-        };
-        let sets = sets.iter();
-        Self {
-            sets: sets
-                .map(|[own, other]| [of(receptor, own), of(ligand, other)])
-                .collect(),
-            sides: Sides::new(receptor, ligand),
-            weight,
-        }
-    }
-
-    /// Weight times the share of a set's residues that are in contact at a pose, of the set with the largest share.
-    fn score(&self, pose: &Pose) -> f64 {
-        let shares = self.sets.iter().map(|[receptor, ligand]| {
-            let count = self
-                .sides
-                .sum_in_contact([receptor, ligand], pose, |atoms| atoms, |_| 1.0);
-            count / (receptor.len() + ligand.len()).max(1) as f64
+/// Weight times the share of a set's residues that are in contact, of the set with the largest share.
+fn term([receptor, ligand]: [&Knots; 2], sets: &[Residues], weight: f64) -> PoseTerm {
+    let of = |knots: &Knots, residues: &[Vec<usize>]| -> Vec<Vec<[f64; 3]>> {
+        let residues = residues.iter();
+        residues.map(|atoms| positions(knots, atoms)).collect()
+    };
+    let sets = sets.iter();
+    let sets = sets.map(|[own, other]| [of(receptor, own), of(ligand, other)]);
+    let sets: Vec<_> = sets.collect();
+    let sides = Sides::new(receptor, ligand);
+    Box::new(move |pose, _| {
+        let shares = sets.iter().map(|set| {
+            let count = sides.sum_in_contact(set, pose, |atoms| atoms, |_| 1.0);
+            count / (set[0].len() + set[1].len()).max(1) as f64
         });
-        self.weight * shares.fold(0.0, f64::max)
-    }
+        weight * shares.fold(0.0, f64::max)
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::se3::Pose;
+    use crate::terms::pose::Workspace;
 
     /// Atoms at 10, 20, 30 and 40 Å on both sides. A residue counts once, however many of its atoms are in contact.
     #[test]
@@ -93,9 +61,11 @@ mod tests {
         let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();
         let knots = Knots::new(centers, vec![1.9; 4]).unwrap();
         let residues = [vec![vec![0], vec![2, 3]], vec![vec![1]]];
-        let term = ActiveResidues::new(&knots, &knots, &[residues], 300.0);
-        let at =
-            |quaternion, x: f64, y: f64| term.score(&Pose::from_parts(quaternion, [x, y, 0.0]));
+        let term = term([&knots, &knots], &[residues], 300.0);
+        let at = |quaternion, x: f64, y: f64| {
+            let pose = Pose::from_parts(quaternion, [x, y, 0.0]);
+            term(&pose, &mut Workspace::default())
+        };
         let straight = [1.0, 0.0, 0.0, 0.0];
         assert_eq!(at(straight, 0.0, 4.9), 300.0);
         assert_eq!(at(straight, 0.0, 5.1), 0.0);
@@ -115,8 +85,11 @@ mod tests {
         let ligand = Knots::new(vec![[0.0; 3], [10.0, 0.0, 0.0]], vec![1.9; 2]).unwrap();
         let set = |first: usize, second: usize| [vec![vec![first], vec![second]], Vec::new()];
         let sets = [set(0, 1), set(2, 3)];
-        let term = ActiveResidues::new(&knots, &ligand, &sets, 300.0);
-        let at = |x: f64| term.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 3.0, 0.0]));
+        let term = term([&knots, &ligand], &sets, 300.0);
+        let at = |x: f64| {
+            let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 3.0, 0.0]);
+            term(&pose, &mut Workspace::default())
+        };
         assert_eq!(at(10.0), 300.0);
         assert_eq!(at(30.0), 300.0);
         assert_eq!(at(20.0), 150.0);

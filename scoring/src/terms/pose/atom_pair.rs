@@ -1,8 +1,7 @@
 //! Pose term `atom_pair`: a potential over pairs of atoms by kind and distance.
 
 use super::bodies::Bodies;
-use super::{TermDefinition, UNRELAXED};
-use crate::se3::Pose;
+use super::{PoseTerm, TermDefinition, UNRELAXED};
 use crate::terms::{built_in, table_lines, wrong};
 use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
@@ -20,55 +19,36 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     count: |inputs| inputs.atoms_with_kinds(),
     applies: |inputs| inputs.has_atom_kinds(),
     build: |inputs, weight| {
-        let [receptor, ligand] = inputs.bodies;
         let potential = inputs.atom_pair_potential.cloned().unwrap_or_default();
-        let term = AtomPairs::new(receptor, ligand, &potential, weight);
-        Box::new(move |pose, _| term.score(pose))
+        term(inputs.bodies, &potential, weight)
     },
 };
 
-/// Two bodies prepared for summing minus the weighted atom pair potential.
+/// Minus the weighted potential (score per RT) over the pairs of two sets of knots with atom kinds.
 ///
-/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`. E_ab joins the table's energies by straight
-/// lines. It is constant below the first distance and falls to 0 over one step after the last. Atoms without a kind
-/// do not count.
-pub(super) struct AtomPairs {
-    bodies: Bodies,
-    energies: EnergyTable,
+/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`, with E_ab by [`EnergyTable::at`]. Atoms without a
+/// kind do not count.
+pub(super) fn term(
+    [receptor, ligand]: [&Knots; 2],
+    potential: &AtomPairPotential,
     weight: f64,
-}
-
-impl AtomPairs {
-    /// Prepares two sets of knots with atom kinds. `weight` is in score per RT.
-    pub fn new(
-        receptor: &Knots,
-        ligand: &Knots,
-        potential: &AtomPairPotential,
-        weight: f64,
-    ) -> Self {
-        let energies = EnergyTable::new(potential);
-        Self {
-            bodies: Bodies::new(
-                receptor,
-                ligand,
-                |knots| &knots.atom_kinds,
-                energies.unknown(),
-            ),
-            energies,
-            weight,
-        }
-    }
-
-    /// Weighted sum at a pose of the ligand; higher is better.
-    pub fn score(&self, pose: &Pose) -> f64 {
-        let sum = self.bodies.sum(
+) -> PoseTerm {
+    let energies = EnergyTable::new(potential);
+    let bodies = Bodies::new(
+        receptor,
+        ligand,
+        |knots| &knots.atom_kinds,
+        energies.unknown(),
+    );
+    Box::new(move |pose, _| {
+        let sum = bodies.sum(
             pose,
             REACH,
             #[inline(always)]
-            |a, b, distance| self.energies.at(a, b, distance).0,
+            |a, b, distance| energies.at(a, b, distance).0,
         );
-        -self.weight * sum
-    }
+        -weight * sum
+    })
 }
 
 /// Distances in Å at which the table holds energies, spaced by [`STEP`].
@@ -102,7 +82,7 @@ pub fn atom_kinds() -> &'static [&'static str] {
 /// The expected frequency follows from the shares of the kinds. A share is the geometric mean of two: that among all
 /// atoms (the mole fractions of Zhang, Vasmatzis, Cornette & DeLisi, J. Mol. Biol. 267 (1997) 707-726) and that among
 /// all partners (the quasi-chemical approximation of Miyazawa & Jernigan, J. Mol. Biol. 256 (1996) 623-644). So
-/// energies contain half of what a kind gains by being buried.
+/// energies contain half of a kind's gain by being buried.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "Vec<Energies>", into = "Vec<Energies>")]
 pub struct AtomPairPotential(Vec<Energies>);
@@ -263,8 +243,7 @@ impl EnergyTable {
 
     /// As [`Self::at`], averaged over the distances within a quarter of an Ångström: the derivative is continuous.
     ///
-    /// The average of straight lines over one step is the quadratic B-spline of their nodes. They end at
-    /// [`SMOOTH_REACH`].
+    /// It is the quadratic B-spline of the nodes and ends at [`SMOOTH_REACH`].
     #[inline(always)]
     pub fn smooth(&self, receptor: usize, ligand: usize, distance: f64) -> (f64, f64) {
         let nodes = &self.energies[receptor * self.kinds + ligand];
@@ -286,6 +265,8 @@ impl EnergyTable {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::se3::Pose;
+    use crate::terms::pose::Workspace;
 
     /// Every pair of kinds has the table's energy, whichever body carries which kind.
     #[test]
@@ -301,12 +282,13 @@ mod tests {
         };
         let all = of(0..kinds);
         for b in 0..kinds {
-            let pairs = AtomPairs::new(&all, &of(b..b + 1), &potential, 1.0);
+            let pairs = term([&all, &of(b..b + 1)], &potential, 1.0);
             for a in 0..kinds {
                 let x = 100.0 * (a as f64 - b as f64) + DISTANCES[2];
                 let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
                 let energy = f64::from(potential.energies(a, b)[2]);
-                assert!((pairs.score(&pose) + energy).abs() < 1e-9, "{a} {b}");
+                let score = pairs(&pose, &mut Workspace::default());
+                assert!((score + energy).abs() < 1e-9, "{a} {b}");
             }
         }
     }
@@ -320,8 +302,11 @@ mod tests {
             let knots = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
             knots.with_atom_kinds(vec![Some(kind)]).unwrap()
         };
-        let pairs = AtomPairs::new(&one(6), &one(18), &potential, 3.0);
-        let at = |x: f64| pairs.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]));
+        let pairs = term([&one(6), &one(18)], &potential, 3.0);
+        let at = |x: f64| {
+            let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
+            pairs(&pose, &mut Workspace::default())
+        };
         let energies = potential.energies(6, 18);
         for (distance, energy) in DISTANCES.iter().zip(energies) {
             assert!((at(*distance) + 3.0 * f64::from(*energy)).abs() < 1e-12);

@@ -1,11 +1,12 @@
 //! Two bodies of typed atoms, and sums over their pairs within a reach.
 
-use crate::blocks::{Blocks, Near};
+use crate::blocks::{Blocks, NearPoints};
 use crate::rigid_move::center;
 use crate::se3::Pose;
+use crate::vectorized::with_simd;
 use knotdock_structures::Knots;
 use nalgebra::Vector3;
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Typed atoms of two bodies, each relative to the centre of its body.
 pub(super) struct Bodies {
@@ -42,50 +43,43 @@ impl Bodies {
     /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs nearer than
     /// `reach` (Å). `value` must be `#[inline(always)]`, so that it is compiled for the vector registers of the sum.
     pub fn sum(&self, pose: &Pose, reach: f64, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
-        Arch::new().dispatch(Sum {
-            bodies: self,
-            pose,
-            reach,
-            value,
-        })
+        let bodies = self;
+        with_simd!(
+            <'a, F: Fn(usize, usize, f64) -> f64>(
+                bodies: &'a Bodies, pose: &'a Pose, reach: f64, value: F
+            ) -> f64,
+            |simd| bodies.sum_with(simd, pose, reach, value)
+        )
     }
-}
-
-/// A sum over the pairs of two bodies at a pose.
-struct Sum<'a, F> {
-    bodies: &'a Bodies,
-    pose: &'a Pose,
-    reach: f64,
-    value: F,
-}
-
-impl<F: Fn(usize, usize, f64) -> f64> WithSimd for Sum<'_, F> {
-    type Output = f64;
 
     #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let (bodies, pose) = (self.bodies, self.pose);
+    fn sum_with<S: Simd>(
+        &self,
+        simd: S,
+        pose: &Pose,
+        reach: f64,
+        value: impl Fn(usize, usize, f64) -> f64,
+    ) -> f64 {
         let matrix = pose.rotation.to_rotation_matrix();
-        let place =
-            pose.rotation * bodies.ligand_center + pose.translation - bodies.receptor_center;
-        let mut near = Near::default();
+        let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
+        let mut near = NearPoints::default();
         let mut total = 0.0;
-        for &(atom, kind) in &bodies.ligand {
+        for &(atom, kind) in &self.ligand {
             let mut sum = 0.0;
             let position = (matrix * atom + place).into();
-            bodies.receptor.near(
+            self.receptor.near(
                 simd,
                 &position,
-                self.reach,
+                reach,
                 &mut near,
                 #[inline(always)]
                 |near| {
                     for (square, point) in near.pairs() {
-                        let Some(&other) = bodies.types.get(point as usize) else {
+                        let Some(&other) = self.types.get(point as usize) else {
                             debug_assert!(false, "an atom that is not there is near");
                             continue;
                         };
-                        sum += (self.value)(other, kind, square.sqrt());
+                        sum += value(other, kind, square.sqrt());
                     }
                 },
             );
@@ -140,7 +134,7 @@ impl Side {
         pose: &Pose,
         point: [f64; 3],
         reach: f64,
-        near: &mut Near,
+        near: &mut NearPoints,
         mut visit: impl FnMut(usize),
     ) {
         let x = (Vector3::from(pose.apply(point)) - self.middle).into();
@@ -155,7 +149,7 @@ impl Side {
     }
 
     /// Whether any of the atoms is in contact with an atom of the other side; `pose` carries the atom into this frame.
-    pub fn touches(&self, pose: &Pose, atom: [f64; 3], near: &mut Near) -> bool {
+    pub fn touches(&self, pose: &Pose, atom: [f64; 3], near: &mut NearPoints) -> bool {
         let mut touches = false;
         self.near(pose, atom, TOUCHING, near, |_| touches = true);
         touches
@@ -176,16 +170,16 @@ impl Sides {
         }
     }
 
-    /// Sum at a pose over the groups of atoms of receptor and ligand that are in contact with the other side, of a value
-    /// of each. The positions of a group's atoms are those of its own file (Å).
+    /// Sum at a pose of the values of the groups of atoms of receptor and ligand that are in contact with the other side.
+    /// Positions of atoms are those of their file (Å).
     pub fn sum_in_contact<G>(
         &self,
-        [of_receptor, of_ligand]: [&[G]; 2],
+        [of_receptor, of_ligand]: &[Vec<G>; 2],
         pose: &Pose,
         atoms: impl Fn(&G) -> &[[f64; 3]],
         value: impl Fn(&G) -> f64,
     ) -> f64 {
-        let mut near = Near::default();
+        let mut near = NearPoints::default();
         let mut sum = |side: &Side, groups: &[G], pose: &Pose| {
             let mut touches = |atom: &[f64; 3]| side.touches(pose, *atom, &mut near);
             let touching = groups

@@ -1,15 +1,14 @@
-//! Pose term `restraints_penalty`: what a pose pays for the distance restraints that it violates.
+//! Pose term `restraints_penalty`: the cost of violated distance restraints.
 //!
 //! A restraint is on the effective distance of its pairs of atoms ([`super::effective_distance`]). It is satisfied
-//! within its bounds, and violated by what the distance misses them by. Where some restraints may be false, only so
-//! many of them have to be satisfied: those that are violated least count, and the others are free.
+//! within its bounds, and otherwise violated by the distance to them. If some restraints may be false, only a number of
+//! them has to be satisfied: those that are violated least count, and the others are free.
 //!
 //! The penalty grows in proportion to the violation. A pose of the search may be 2 to 4 Å from the nearest sampled
 //! one, so that a penalty by squares would refuse poses for the coarseness of the search.
 
-use super::{TermDefinition, UNRELAXED};
+use super::{PoseTerm, TermDefinition, UNRELAXED};
 use crate::se3::Pose;
-use knotdock_structures::Knots;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
@@ -22,12 +21,8 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     count: |inputs| [inputs.distance_restraints.list.len(); 2],
     applies: |inputs| !inputs.distance_restraints.list.is_empty(),
     build: |inputs, weight| {
-        let term = RestraintPenalty {
-            restraints: inputs.distance_restraints.clone(),
-            positions: inputs.bodies.map(|knots: &Knots| knots.centers.clone()),
-            weight,
-        };
-        Box::new(move |pose, workspace| term.score(pose, &mut workspace.violations))
+        let positions = inputs.bodies.map(|knots| knots.centers.clone());
+        term(inputs.distance_restraints.clone(), positions, weight)
     },
 };
 
@@ -43,7 +38,7 @@ pub struct DistanceRestraint {
     pub upper: f64,
 }
 
-/// Restraints of which so many have to be satisfied.
+/// Restraints of which a number has to be satisfied.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct DistanceRestraints {
     /// The restraints.
@@ -52,39 +47,31 @@ pub struct DistanceRestraints {
     pub needed: usize,
 }
 
-/// No restraints.
-static NONE: DistanceRestraints = DistanceRestraints {
-    list: Vec::new(),
-    needed: 0,
-};
-
 impl DistanceRestraints {
     /// No restraints.
     pub fn none() -> &'static Self {
+        static NONE: DistanceRestraints = DistanceRestraints {
+            list: Vec::new(),
+            needed: 0,
+        };
         &NONE
     }
 }
 
-/// Two bodies prepared for the penalty.
-struct RestraintPenalty {
-    restraints: DistanceRestraints,
-    /// Positions of the atoms of receptor and ligand, each in its own file (Å).
-    positions: [Vec<[f64; 3]>; 2],
-    weight: f64,
-}
-
-impl RestraintPenalty {
-    fn score(&self, pose: &Pose, violations: &mut Vec<f64>) -> f64 {
-        let [receptor, ligand] = &self.positions;
+/// Minus the weight times the violations that count; `positions` of the atoms are those of each side's file (Å).
+fn term(restraints: DistanceRestraints, positions: [Vec<[f64; 3]>; 2], weight: f64) -> PoseTerm {
+    Box::new(move |pose, workspace| {
+        let [receptor, ligand] = &positions;
+        let violations = &mut workspace.violations;
         violations.clear();
-        violations.extend(self.restraints.list.iter().map(|restraint| {
+        violations.extend(restraints.list.iter().map(|restraint| {
             restraint.violation(restraint.effective_distance(receptor, ligand, pose))
         }));
         violations.sort_unstable_by(f64::total_cmp);
-        let counted = violations.iter().take(self.restraints.needed);
+        let counted = violations.iter().take(restraints.needed);
         // Without violations the score is 0, not -0.
-        0.0 - self.weight * counted.sum::<f64>()
-    }
+        0.0 - weight * counted.sum::<f64>()
+    })
 }
 
 impl DistanceRestraint {
@@ -133,6 +120,7 @@ fn inverse_sixth(a: [f64; 3], b: [f64; 3]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::terms::pose::Workspace;
 
     /// Three restraints of 2 to 5 Å between single atoms.
     #[test]
@@ -142,20 +130,13 @@ mod tests {
             lower: 2.0,
             upper: 5.0,
         };
-        let term = |needed: usize| RestraintPenalty {
-            restraints: DistanceRestraints {
-                list: [2, 0, 1].map(restraint).to_vec(),
-                needed,
-            },
-            positions: [
-                vec![[0.0; 3], [0.0, 10.0, 0.0], [0.0, 20.0, 0.0]],
-                vec![[0.0; 3]],
-            ],
-            weight: 2.0,
-        };
         let at = |needed: usize, x: f64| {
+            let list = [2, 0, 1].map(restraint).to_vec();
+            let receptor = vec![[0.0; 3], [0.0, 10.0, 0.0], [0.0, 20.0, 0.0]];
+            let positions = [receptor, vec![[0.0; 3]]];
+            let term = term(DistanceRestraints { list, needed }, positions, 2.0);
             let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
-            term(needed).score(&pose, &mut Vec::new())
+            term(&pose, &mut Workspace::default())
         };
         // At 0, 10 and 20 Å: 2 Å too near, 5 and 15 Å too far.
         for (needed, violation) in [(1, 2.0), (2, 7.0), (3, 22.0)] {

@@ -1,12 +1,12 @@
 //! Pose term `fine_contact`: a contact potential in three ranges of distance.
 
 use super::bodies::Bodies;
-use super::{TermDefinition, UNRELAXED};
-use crate::se3::Pose;
+use super::{PoseTerm, TermDefinition, UNRELAXED};
 use crate::terms::effect::contact::{Potential, TYPES, header};
 use crate::terms::{built_in, end, table_lines};
 use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
+use std::array::from_fn;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
@@ -21,69 +21,50 @@ pub(super) const TERM: TermDefinition = TermDefinition {
             .bodies
             .map(|knots| knots.contact_types.iter().flatten().count())
     },
-    applies: |inputs| inputs.has_contact_types(),
-    build: |inputs, weight| {
+    applies: |inputs| {
         let [receptor, ligand] = inputs.bodies;
+        !receptor.contact_types.is_empty() && !ligand.contact_types.is_empty()
+    },
+    build: |inputs, weight| {
         let potential = inputs.fine_contact_potential.cloned().unwrap_or_default();
-        let term = FineContacts::new(receptor, ligand, &potential, weight);
-        Box::new(move |pose, _| term.score(pose))
+        term(inputs.bodies, &potential, weight)
     },
 };
 
 /// Distance in Å from which nothing counts.
 const REACH: f64 = ENDS[2][1];
 
-/// Two bodies prepared for summing minus the weighted potential over their contacts.
+/// Minus the weighted potential (score per RT) over the contacts of two sets of knots with contact types.
 ///
 /// Two atoms of types a and c at distance d score `-weight sum_b E_b[a][c] (s_b(d) - s_{b-1}(d))` over the ranges b.
 /// s_b is the step that ends range b, and s_{-1} = 0. Atoms without a type do not count.
-struct FineContacts {
-    bodies: Bodies,
-    /// Factor of each step s_b, -weight (E_b - E_{b+1}): `[receptor type][ligand type][range]`.
-    steps: Vec<[[f64; 3]; TYPES.len()]>,
-}
-
-impl FineContacts {
-    /// Prepares two sets of knots with contact types. `weight` is in score per RT.
-    pub fn new(
-        receptor: &Knots,
-        ligand: &Knots,
-        potential: &DistanceBinnedPotential,
-        weight: f64,
-    ) -> Self {
-        let energy = |range: usize, a: usize, b: usize| {
-            potential
-                .ranges
-                .get(range)
-                .map_or(0.0, |table| table.energy(a, b))
-        };
-        let steps = (0..TYPES.len()).map(|a| {
-            std::array::from_fn(|b| {
-                std::array::from_fn(|range| {
-                    -weight * (energy(range, a, b) - energy(range + 1, a, b))
-                })
-            })
-        });
-        Self {
-            bodies: Bodies::new(receptor, ligand, |knots| &knots.contact_types, TYPES.len()),
-            steps: steps.collect(),
-        }
-    }
-
-    /// Weighted sum at a pose of the ligand; higher is better.
-    pub fn score(&self, pose: &Pose) -> f64 {
-        self.bodies.sum(
+fn term(
+    [receptor, ligand]: [&Knots; 2],
+    potential: &DistanceBinnedPotential,
+    weight: f64,
+) -> PoseTerm {
+    let energy = |range: usize, a: usize, b: usize| {
+        let table = potential.ranges.get(range);
+        table.map_or(0.0, |table| table.energy(a, b))
+    };
+    // Factor of each step s_b, -weight (E_b - E_{b+1}): [receptor type][ligand type][range].
+    let step = |range, a, b| -weight * (energy(range, a, b) - energy(range + 1, a, b));
+    let steps: [[[f64; 3]; TYPES.len()]; TYPES.len()] =
+        from_fn(|a| from_fn(|b| from_fn(|range| step(range, a, b))));
+    let bodies = Bodies::new(receptor, ligand, |knots| &knots.contact_types, TYPES.len());
+    Box::new(move |pose, _| {
+        bodies.sum(
             pose,
             REACH,
             #[inline(always)]
             |a, b, distance| {
-                let [first, second, third] = self.steps[a][b];
+                let [first, second, third] = steps[a][b];
                 first * step_down(distance, ENDS[0])
                     + second * step_down(distance, ENDS[1])
                     + third * step_down(distance, ENDS[2])
             },
         )
-    }
+    })
 }
 
 /// Names of the ranges in the table, from near to far.
@@ -115,8 +96,7 @@ impl Default for DistanceBinnedPotential {
 }
 
 impl DistanceBinnedPotential {
-    /// Reads a table: lines of `#`, a header `range,type,` with the names of the types, then for each range a row for
-    /// each type.
+    /// Reads a table: lines of `#`, a header `range,type,` with the names of the types, then one row per range and type.
     ///
     /// # Errors
     /// [`Error`] with the line that has another form, or if the energies of a range are not finite and
@@ -141,6 +121,14 @@ pub(super) fn step_down(distance: f64, [start, stop]: [f64; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::se3::Pose;
+    use crate::terms::pose::Workspace;
+
+    /// Score of a pair of knots at x on the first axis.
+    fn at(contacts: &PoseTerm, x: f64) -> f64 {
+        let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
+        contacts(&pose, &mut Workspace::default())
+    }
 
     /// Two atoms in the middle of a range have its energy, and between two ranges a part of both. Beyond the reach
     /// there is none.
@@ -151,8 +139,8 @@ mod tests {
             let knots = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
             knots.with_labels(Vec::new(), vec![Some(kind)]).unwrap()
         };
-        let contacts = FineContacts::new(&one(6), &one(8), &potential, 3.0);
-        let at = |x: f64| contacts.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]));
+        let contacts = term([&one(6), &one(8)], &potential, 3.0);
+        let at = |x: f64| at(&contacts, x);
         let energy = |range: usize| potential.ranges[range].energy(6, 8);
         for (range, distance) in [3.0, 4.75, 6.5].into_iter().enumerate() {
             assert!(
@@ -183,11 +171,10 @@ mod tests {
         };
         for a in 0..TYPES.len() {
             for b in 0..TYPES.len() {
-                let contacts = FineContacts::new(&one(a), &one(b), &potential, 1.0);
+                let contacts = term([&one(a), &one(b)], &potential, 1.0);
                 for (range, x) in [3.0, 4.75, 6.5].into_iter().enumerate() {
-                    let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
                     let energy = potential.ranges[range].energy(a, b);
-                    assert!((contacts.score(&pose) + energy).abs() < 1e-12, "{a} {b}");
+                    assert!((at(&contacts, x) + energy).abs() < 1e-12, "{a} {b}");
                 }
             }
         }
@@ -196,8 +183,8 @@ mod tests {
     #[test]
     fn no_typed_atom_scores_nothing() {
         let bare = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
-        let contacts = FineContacts::new(&bare, &bare, &DistanceBinnedPotential::default(), 1.0);
-        assert_eq!(contacts.score(&Pose::identity()), 0.0);
+        let contacts = term([&bare, &bare], &DistanceBinnedPotential::default(), 1.0);
+        assert_eq!(at(&contacts, 0.0), 0.0);
     }
 }
 

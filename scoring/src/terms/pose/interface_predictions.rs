@@ -15,8 +15,7 @@
 //! predictor (docs/guides/known_residues.md, "Predictions").
 
 use super::bodies::{Sides, positions};
-use super::{TermDefinition, UNRELAXED};
-use crate::se3::Pose;
+use super::{PoseTerm, TermDefinition, UNRELAXED};
 use knotdock_structures::Knots;
 
 /// Definition of the term.
@@ -29,12 +28,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     reads: "residues with a prediction",
     count: |inputs| inputs.predicted.map(<[_]>::len),
     applies: |inputs| inputs.predicted.iter().any(|side| !side.is_empty()),
-    build: |inputs, weight| {
-        let [receptor, ligand] = inputs.bodies;
-        let predicted = inputs.predicted;
-        let term = InterfacePredictions::new(receptor, ligand, predicted, weight);
-        Box::new(move |pose, _| term.score(pose))
-    },
+    build: |inputs, weight| term(inputs.bodies, inputs.predicted, weight),
 };
 
 /// A residue with a predicted probability to be in the interface.
@@ -46,52 +40,32 @@ pub struct PredictedResidue {
     pub log_odds: f64,
 }
 
-/// Two bodies prepared for the log-odds of the residues in contact.
-struct InterfacePredictions {
-    /// Positions of the atoms of each residue of receptor and ligand (Å), and its log-odds. Without those of no odds.
-    residues: [Vec<(Vec<[f64; 3]>, f64)>; 2],
-    sides: Sides,
+/// Weight (the score of a nat) times the log-odds of all residues in contact.
+fn term(
+    [receptor, ligand]: [&Knots; 2],
+    predicted: [&[PredictedResidue]; 2],
     weight: f64,
-}
-
-impl InterfacePredictions {
-    /// Prepares two sets of knots. `weight` is the score of a nat.
-    fn new(
-        receptor: &Knots,
-        ligand: &Knots,
-        predicted: [&[PredictedResidue]; 2],
-        weight: f64,
-    ) -> Self {
-        let of = |knots: &Knots, side: &[PredictedResidue]| {
-            let counting = side.iter().filter(|residue| residue.log_odds != 0.0);
-            counting
-                .map(|residue| (positions(knots, &residue.atoms), residue.log_odds))
-                .collect()
-        };
-        Self {
-            residues: [of(receptor, predicted[0]), of(ligand, predicted[1])],
-            sides: Sides::new(receptor, ligand),
-            weight,
-        }
-    }
-
-    /// Weight times the log-odds of all residues in contact.
-    fn score(&self, pose: &Pose) -> f64 {
-        let residues = self.residues.each_ref().map(Vec::as_slice);
-        let odds = self.sides.sum_in_contact(
-            residues,
-            pose,
-            |(atoms, _)| atoms,
-            |(_, log_odds)| *log_odds,
-        );
+) -> PoseTerm {
+    let of = |knots: &Knots, side: &[PredictedResidue]| -> Vec<(Vec<[f64; 3]>, f64)> {
+        let counting = side.iter().filter(|residue| residue.log_odds != 0.0);
+        counting
+            .map(|residue| (positions(knots, &residue.atoms), residue.log_odds))
+            .collect()
+    };
+    let residues = [of(receptor, predicted[0]), of(ligand, predicted[1])];
+    let sides = Sides::new(receptor, ligand);
+    Box::new(move |pose, _| {
+        let odds = sides.sum_in_contact(&residues, pose, |(atoms, _)| atoms, |(_, odds)| *odds);
         // Without residues the score is 0, not -0.
-        0.0 + self.weight * odds
-    }
+        0.0 + weight * odds
+    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::se3::Pose;
+    use crate::terms::pose::Workspace;
 
     /// Atoms at 10, 20, 30 and 40 Å on both sides; the receptor's third residue has two atoms.
     #[test]
@@ -108,8 +82,11 @@ mod tests {
             residue(&[2, 3], -0.5),
         ];
         let ligand = [residue(&[3], 4.0)];
-        let term = InterfacePredictions::new(&knots, &knots, [&receptor, &ligand], 10.0);
-        let at = |x: f64, y: f64| term.score(&Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, y, 0.0]));
+        let term = term([&knots, &knots], [&receptor, &ligand], 10.0);
+        let at = |x: f64, y: f64| {
+            let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, y, 0.0]);
+            term(&pose, &mut Workspace::default())
+        };
         assert_eq!(at(0.0, 4.9), 55.0);
         let none = at(0.0, 5.1);
         assert!(none == 0.0 && none.is_sign_positive());

@@ -1,4 +1,4 @@
-//! Pose term `membrane`: how deep one side lies in the membrane of the other.
+//! Pose term `membrane`: depth of one side in the membrane of the other.
 //!
 //! A membrane is a slab between two planes across the z axis of one side's file. The depth is the way along z after
 //! which no atom of the other side has its centre in the slab, and that whole side lies above or below.

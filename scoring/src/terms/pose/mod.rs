@@ -91,11 +91,6 @@ pub struct TermDefinition {
 }
 
 impl TermDefinition {
-    /// The term with an id.
-    pub fn with_id(id: &str) -> Option<&'static Self> {
-        POSE_TERMS.iter().find(|term| term.id == id)
-    }
-
     /// Whether it scores poses: its weight is positive and the inputs hold what it reads.
     pub fn acts(&self, inputs: &TermInputs, weight: f64) -> bool {
         weight > 0.0 && (self.applies)(inputs)
@@ -126,13 +121,6 @@ pub struct TermInputs<'a> {
 }
 
 impl TermInputs<'_> {
-    /// Whether both bodies carry contact types.
-    fn has_contact_types(&self) -> bool {
-        self.bodies
-            .iter()
-            .all(|knots| !knots.contact_types.is_empty())
-    }
-
     /// Numbers of atoms with a kind of receptor and ligand.
     fn atoms_with_kinds(&self) -> [usize; 2] {
         self.bodies
@@ -176,6 +164,11 @@ impl Rescorer {
     }
 }
 
+/// Place of the term with an id in [`POSE_TERMS`].
+fn index_of(id: &str) -> Option<usize> {
+    POSE_TERMS.iter().position(|term| term.id == id)
+}
+
 /// Weighted values of the pose terms at one pose; higher is better. A term that does not act has no value.
 ///
 /// It serialises to a map from ids to values, with `null` for the terms that do not act.
@@ -190,9 +183,9 @@ impl TermValues {
 
     /// Value of the term with this id; `None` if the term does not act.
     pub fn get(&self, id: &str) -> Option<f64> {
-        debug_assert!(TermDefinition::with_id(id).is_some(), "no pose term '{id}'");
-        let (_, value) = self.iter().find(|(term, _)| term.id == id)?;
-        value
+        let index = index_of(id);
+        debug_assert!(index.is_some(), "no pose term '{id}'");
+        self.0[index?]
     }
 
     /// Sets the value of the term at `index` of [`POSE_TERMS`].
@@ -206,7 +199,7 @@ impl TermValues {
     /// If no term has this id.
     #[must_use]
     pub fn with(mut self, id: &str, value: f64) -> Self {
-        let Some(index) = POSE_TERMS.iter().position(|term| term.id == id) else {
+        let Some(index) = index_of(id) else {
             unreachable!("no pose term '{id}'");
         };
         self.set(index, value);
@@ -243,10 +236,9 @@ mod tests {
             assert!(lower(term.id, '_'), "{}", term.id);
             assert!(lower(term.label, ' '), "{}", term.label);
             assert!((0.0..=1.0).contains(&term.time_share));
-            let found = TermDefinition::with_id(term.id).unwrap();
-            assert_eq!(found.label, term.label);
+            assert_eq!(index_of(term.id), Some(index));
         }
-        assert!(TermDefinition::with_id("gravity").is_none());
+        assert!(index_of("gravity").is_none());
     }
 
     /// Without weights or without inputs there is nothing to score, and a term alone has the only value.

@@ -6,8 +6,8 @@
 //! earn.
 
 use super::bodies::Side;
-use super::{TermDefinition, UNRELAXED};
-use crate::blocks::Near;
+use super::{PoseTerm, TermDefinition, UNRELAXED};
+use crate::blocks::NearPoints;
 use crate::rigid_move::center;
 use crate::se3::Pose;
 use knotdock_structures::{Conformers, Knots};
@@ -23,12 +23,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
     reads: "segments",
     count: |inputs| inputs.unresolved.map(<[_]>::len),
     applies: |inputs| inputs.unresolved.iter().any(|side| !side.is_empty()),
-    build: |inputs, weight| {
-        let [receptor, ligand] = inputs.bodies;
-        let segments = inputs.unresolved;
-        let term = UnresolvedClashes::new(receptor, ligand, segments, weight);
-        Box::new(move |pose, _| term.score(pose))
-    },
+    build: |inputs, weight| term(inputs.bodies, inputs.unresolved, weight),
 };
 
 /// Distance in Å from a residue's CA within which an atom clashes with the residue.
@@ -36,15 +31,6 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 /// It is 3.2 Å, the radius of a ball of a residue's volume, and 1.8 Å, the radius of an atom. The mean volume is 134
 /// Å³ (over proteins, by the volumes of Zamyatnin, Prog. Biophys. Mol. Biol. 24 (1972) 107-123).
 const REACH: f64 = 5.0;
-
-/// Two bodies prepared for charging clashes with unresolved segments.
-struct UnresolvedClashes {
-    /// Segments of receptor and ligand.
-    segments: [Vec<Occupancy>; 2],
-    receptor: Body,
-    ligand: Body,
-    weight: f64,
-}
 
 /// The atoms of one side, in cells and by index, relative to their centre.
 struct Body {
@@ -71,33 +57,19 @@ struct Occupancy {
     radius: f64,
 }
 
-impl UnresolvedClashes {
-    /// Prepares two sets of knots. `weight` is the cost of an atom within reach of all conformers of one segment of
-    /// the other side.
-    pub fn new(
-        receptor: &Knots,
-        ligand: &Knots,
-        segments: [&[Conformers]; 2],
-        weight: f64,
-    ) -> Self {
-        Self {
-            segments: segments.map(|side| side.iter().map(Occupancy::new).collect()),
-            receptor: Body::new(receptor),
-            ligand: Body::new(ligand),
-            weight,
-        }
-    }
-
-    /// Minus the weight times the clashes of both sides; each atom counts by its share of the conformers of each
-    /// segment.
-    pub fn score(&self, pose: &Pose) -> f64 {
-        let [receptor, ligand] = &self.segments;
+/// Minus the weight times the clashes of both sides; each atom counts by its share of the conformers of each segment
+/// of the other side.
+fn term(bodies: [&Knots; 2], segments: [&[Conformers]; 2], weight: f64) -> PoseTerm {
+    let of_side = |side: &[Conformers]| side.iter().map(Occupancy::new).collect::<Vec<_>>();
+    let segments = segments.map(of_side);
+    let [receptor, ligand] = bodies.map(Body::new);
+    Box::new(move |pose, _| {
         let inverse = pose.inverse();
-        let clashes = clashes(&self.ligand, receptor, pose, &inverse)
-            + clashes(&self.receptor, ligand, &inverse, pose);
+        let clashes = clashes(&ligand, &segments[0], pose, &inverse)
+            + clashes(&receptor, &segments[1], &inverse, pose);
         // Without clashes the score is 0, not -0.
-        0.0 - self.weight * clashes
-    }
+        0.0 - weight * clashes
+    })
 }
 
 impl Body {
@@ -117,7 +89,7 @@ impl Body {
 /// `pose` carries the body into the frame of the segments, and `inverse` carries them into its own.
 fn clashes(body: &Body, segments: &[Occupancy], pose: &Pose, inverse: &Pose) -> f64 {
     let mut sum = 0.0;
-    let mut near = Near::default();
+    let mut near = NearPoints::default();
     for segment in segments {
         let (rotation, translation) = segment.cells_from(pose, body.center);
         body.side
@@ -215,9 +187,9 @@ impl Occupancy {
 
 #[cfg(test)]
 mod tests {
-    use std::slice;
-
     use super::*;
+    use crate::terms::pose::Workspace;
+    use std::slice::from_ref;
 
     const TURNED: [[f64; 3]; 3] = [[0.0, 1.0, 0.0], [-1.0, 0.0, 0.0], [0.0, 0.0, 1.0]];
 
@@ -256,17 +228,20 @@ mod tests {
                 / 3.0
         };
         assert!((places.map(passing).iter().sum::<f64>() - 8.0 / 3.0).abs() < 1e-12);
-        let term = UnresolvedClashes::new(&receptor, &ligand, [slice::from_ref(&one), &[]], 6.0);
-        let swapped = UnresolvedClashes::new(&ligand, &receptor, [&[], slice::from_ref(&one)], 6.0);
+        let score = |bodies: [&Knots; 2], segments: [&[Conformers]; 2], pose: &Pose| {
+            term(bodies, segments, 6.0)(pose, &mut Workspace::default())
+        };
+        let of_first = |pose: &Pose| score([&receptor, &ligand], [from_ref(&one), &[]], pose);
+        let of_second = |pose: &Pose| score([&ligand, &receptor], [&[], from_ref(&one)], pose);
         for shift in [0.0, -8.0, 4.0, -300.0] {
             let [there, back] =
                 [shift, -shift].map(|y| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [0.0, y, 0.0]));
             let expected: f64 = places.map(|y| -6.0 * passing(y + shift)).iter().sum();
-            assert!((term.score(&there) - expected).abs() < 1e-12);
-            assert!((swapped.score(&back) - expected).abs() < 1e-12);
+            assert!((of_first(&there) - expected).abs() < 1e-12);
+            assert!((of_second(&back) - expected).abs() < 1e-12);
         }
         let far = Pose::from_parts([0.0, 0.0, 0.0, 1.0], [900.0, 0.0, 0.0]);
-        assert!(term.score(&far) == 0.0 && term.score(&far).is_sign_positive());
+        assert!(of_first(&far) == 0.0 && of_first(&far).is_sign_positive());
     }
 
     /// Cells agree with distances to all residues, but for a shell of half a cell's diagonal about the reach.

@@ -3,7 +3,7 @@
 use super::super::Real;
 use super::sorted_points::Grid;
 use super::{FIRST_GROUP, Plan, SortedPoints, TransformError};
-use crate::vectorized::vectorized;
+use crate::vectorized::vectorize;
 use num_complex::Complex;
 
 impl<T: Real, const D: usize> Plan<T, D> {
@@ -15,7 +15,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// Folds and sorts points (in units of the period) for transforms by this plan.
     ///
     /// # Errors
-    ///
     /// [`TransformError`] when a coordinate is not finite or there are more than 2^32 - 1 points.
     pub fn locate(&self, points: &[[f64; D]]) -> Result<SortedPoints<D>, TransformError> {
         let mut sorted = SortedPoints::new(self.grid);
@@ -26,7 +25,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// As [`Self::locate`], into memory that is there: nothing is allocated for no more points than were there before.
     ///
     /// # Errors
-    ///
     /// As [`Self::locate`]; after one, `sorted` must not be used until points have been set.
     pub fn locate_into(
         &self,
@@ -34,16 +32,12 @@ impl<T: Real, const D: usize> Plan<T, D> {
         sorted: &mut SortedPoints<D>,
     ) -> Result<(), TransformError> {
         sorted.grid = self.grid;
-        vectorized(
-            #[inline(always)]
-            || sorted.set(points),
-        )
+        vectorize!(sorted.set(points))
     }
 
     /// Type 1, points to modes: `output[k] = sum_j weights[j] exp(-2 pi i k.x_j)`.
     ///
     /// # Errors
-    ///
     /// [`TransformError`] when an array has another length than points or modes, or belongs to another plan.
     pub fn forward(
         &self,
@@ -53,17 +47,13 @@ impl<T: Real, const D: usize> Plan<T, D> {
         output: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, weights.len(), output.len(), work)?;
-        vectorized(
-            #[inline(always)]
-            || self.run_forward(points, weights, work, output),
-        );
+        vectorize!(self.run_forward(points, weights, work, output));
         Ok(())
     }
 
     /// Type 2, modes to values at the points: `values[j] = sum_k modes[k] exp(+2 pi i k.x_j)`.
     ///
     /// # Errors
-    ///
     /// As [`Self::forward`].
     pub fn adjoint(
         &self,
@@ -73,10 +63,7 @@ impl<T: Real, const D: usize> Plan<T, D> {
         values: &mut [Complex<T>],
     ) -> Result<(), TransformError> {
         self.check(points, values.len(), modes.len(), work)?;
-        vectorized(
-            #[inline(always)]
-            || self.run_adjoint(points, modes, work, values),
-        );
+        vectorize!(self.run_adjoint(points, modes, work, values));
         Ok(())
     }
 

@@ -1,14 +1,12 @@
 //! The non-uniform fast Fourier transform (NUFFT): both types, three or four dimensions, single or double precision.
 //!
-//! This is the general transform. It takes any points of the period and any number of modes an axis, keeps all modes,
-//! and reports every misuse as an error. The search uses the other one, `pruned_type1`: type 1 alone, of knots
-//! inside a block of the box, with only the modes of a [`super::modes::ModeSet`], several sets of weights at a time.
+//! This is the general transform, of any points and any number of modes per axis. The search uses `pruned_type1`: type 1
+//! alone, of knots inside a block of the box, with only the modes of a [`super::modes::ModeSet`].
 //!
 //! # Conventions
 //!
 //! Points are in units of the period on each axis (divide a length by the box length first); any finite value stands
-//! for its fractional part. They are always f64, as single precision would cost 1e-5 of a hundred modes before the
-//! transform begins.
+//! for its fractional part. They are always f64.
 //!
 //! - [`Plan::forward`] (type 1, points to modes): f_k = sum_j c_j exp(-2 pi i k.x_j).
 //! - [`Plan::adjoint`] (type 2, modes to values at the points): v_j = sum_k f_k exp(+2 pi i k.x_j), the exact adjoint

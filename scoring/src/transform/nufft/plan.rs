@@ -16,7 +16,7 @@ const SLAB: usize = 8;
 /// three dimensions.
 const ALIASING_SHARE: f64 = 0.33;
 /// Most points of a fine grid.
-const LARGEST_GRID: usize = u32::MAX as usize;
+const MAX_GRID: usize = u32::MAX as usize;
 
 /// A planned pair of transforms between points and `D` = 3 or 4 axes of modes. See the [module](super) for conventions.
 ///
@@ -39,7 +39,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// f32. Grid and window are chosen for the least time at about `points` points; any number may be transformed.
     ///
     /// # Errors
-    ///
     /// [`PlanError`] when an axis has no modes, the tolerance is out of reach, or the grid would be too large.
     pub fn new(modes: [usize; D], tolerance: f64, points: usize) -> Result<Self, PlanError> {
         Self::cheapest(modes, tolerance, points, &OVERSAMPLING)
@@ -48,7 +47,6 @@ impl<T: Real, const D: usize> Plan<T, D> {
     /// As [`Self::new`], with the grid at least `oversampling` (above 1, at most 4) times finer than the modes.
     ///
     /// # Errors
-    ///
     /// As [`Self::new`]; and when the oversampling is out of range. Little oversampling cannot reach small tolerances.
     pub fn with_oversampling(
         modes: [usize; D],
@@ -148,7 +146,7 @@ fn is_addressable(sizes: &[usize]) -> bool {
     let product = sizes
         .iter()
         .try_fold(1usize, |product, &n| product.checked_mul(n));
-    product.is_some_and(|product| product <= LARGEST_GRID)
+    product.is_some_and(|product| product <= MAX_GRID)
 }
 
 /// Chooses the cheapest grid and window that reach the tolerance.
@@ -291,7 +289,7 @@ pub enum PlanError {
     Tolerance {
         /// The requested value.
         requested: f64,
-        /// What this precision or the widest window can do.
+        /// Least tolerance of this precision or the widest window.
         least: f64,
     },
     /// The grid does not fit into the address space.

@@ -8,7 +8,7 @@ const BIN: usize = 8;
 /// Points in cells of one plan's fine grid, sorted; made by [`super::Plan::locate`].
 #[derive(Clone, Debug)]
 pub struct SortedPoints<const D: usize> {
-    /// Where each sorted point stands in the caller's order.
+    /// Place of each sorted point in the caller's order.
     pub(super) order: Vec<u32>,
     /// Lower end of each sorted point's window in cells; its ceiling is the first grid point, in 0..fine.
     pub(super) low: Vec<[f64; D]>,
@@ -20,7 +20,7 @@ pub struct SortedPoints<const D: usize> {
     starts: Vec<u32>,
 }
 
-/// What the order of points depends on.
+/// Quantities that the order of points depends on.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Grid<const D: usize> {
     pub(super) fine: [usize; D],

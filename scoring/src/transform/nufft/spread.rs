@@ -5,7 +5,7 @@ use super::super::spreading::MAX_WIDTH;
 use super::{Plan, SortedPoints, Workspace};
 use num_complex::Complex;
 
-/// Where a point's window stands: rows of the grid with their shares.
+/// A point's window: rows of the grid with their shares.
 pub(super) struct Stencil<T, const LANES: usize> {
     /// First number of the window in a row.
     pub(super) start: usize,

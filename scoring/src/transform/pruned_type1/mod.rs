@@ -4,14 +4,9 @@
 //! they occupy. The three one-dimensional transforms then skip the lines that hold nothing and the modes that are not
 //! kept. Several components (sets of weights on the same knots) go through together.
 //!
-//! How it differs from the general transform, [`super::nufft`]:
-//!
-//! - it takes lengths in Å relative to a block's centre, not fractions of a period;
-//! - it keeps the modes of a [`ModeSet`], not a box of them;
-//! - it runs in stages, component by component, so that an engine can use a column while it is in the cache;
-//! - it checks its input in debug builds alone;
-//! - it does not divide out the window's own transform: [`Forward::deconvolution`] gives the factors, which the caller
-//!   multiplies into its own.
+//! Unlike the general transform, [`super::nufft`], it takes lengths in Å relative to a block's centre and keeps the modes
+//! of a [`ModeSet`]. It runs in stages, component by component, so that an engine can use a column while it is in the
+//! cache. It does not divide out the window's own transform: [`Forward::deconvolution`] gives the factors.
 
 mod axes;
 
@@ -92,7 +87,7 @@ impl<T: Real> Forward<T> {
         }
     }
 
-    /// Where the block's centre lies, in cells from the box's origin: knots are given relative to it.
+    /// The block's centre in cells from the box's origin: knots are given relative to it.
     pub fn center(&self) -> [f64; 3] {
         [0, 1, 2].map(|axis| 0.5 * (self.block[axis] as f64 - 1.0))
     }
@@ -172,7 +167,7 @@ impl<T: Real> Forward<T> {
     /// The whole transform with the window divided out, for one set-up call: `output` is `[component][mode]`.
     ///
     /// # Panics
-    /// Where a knot lies outside the planned block.
+    /// If a knot is outside the planned block.
     pub fn transform(
         &self,
         points: &[[f64; 3]],

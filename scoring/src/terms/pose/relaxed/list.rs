@@ -1,10 +1,11 @@
 //! The ligand atoms near the receptor, their pairs, and the interface's centre and radius.
 
-use crate::blocks::{Blocks, Near};
+use crate::blocks::{Blocks, NearPoints};
 use crate::rigid_move::Move;
 use crate::se3::Pose;
+use crate::vectorized::with_simd;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Distance in Å beyond the reach up to which ligand atoms are collected. Once one may have moved farther they are
 /// collected anew, so that those collected make every pair within reach.
@@ -47,7 +48,7 @@ pub struct Workspace {
     /// Centre of the interface relative to the receptor's, Å.
     pub(super) middle: Vector3<f64>,
     /// Receptor atoms near one of them.
-    near: Near,
+    near: NearPoints,
     /// Violations of distance restraints, Å.
     pub(in crate::terms::pose) violations: Vec<f64>,
 }
@@ -62,7 +63,7 @@ pub(super) struct Pair<'a> {
     pub square: f64,
 }
 
-/// Where the ligand stands before any move, relative to the receptor's centre.
+/// Place of the ligand before any move, relative to the receptor's centre.
 pub(super) struct Start {
     matrix: Matrix3<f64>,
     place: Vector3<f64>,
@@ -87,7 +88,7 @@ impl Workspace {
 }
 
 impl Atoms {
-    /// Where the ligand stands at a pose.
+    /// Place of the ligand at a pose.
     pub(super) fn start(&self, pose: &Pose) -> Start {
         Start {
             matrix: *pose.rotation.to_rotation_matrix().matrix(),
@@ -196,10 +197,11 @@ impl Atoms {
     /// Centre and radius of the middles of all pairs, which weigh less the farther they are and nothing at the reach.
     /// `None` if no pair is within reach. From then on arms are relative to that centre.
     pub(super) fn interface(&self, workspace: &mut Workspace) -> Option<Interface> {
-        let middles = Arch::new().dispatch(Middles {
-            atoms: self,
-            workspace,
-        });
+        let atoms = self;
+        let middles = with_simd!(
+            <'a>(atoms: &'a Atoms, workspace: &'a mut Workspace) -> MiddleSums,
+            |simd| atoms.middles(simd, workspace)
+        );
         if middles.count == 0.0 {
             return None;
         }
@@ -208,6 +210,31 @@ impl Atoms {
         let radius = (spread + MIN_RADIUS * MIN_RADIUS).sqrt();
         workspace.recenter(&middle);
         Some(Interface { middle, radius })
+    }
+
+    /// Sums over the weighted middles of all pairs.
+    #[inline(always)]
+    fn middles<S: Simd>(&self, simd: S, workspace: &mut Workspace) -> MiddleSums {
+        let mut sums = MiddleSums::default();
+        let from = workspace.middle;
+        self.visit(
+            simd,
+            workspace,
+            &Move::default(),
+            #[inline(always)]
+            || (),
+            #[inline(always)]
+            |(), atom, pair| {
+                let weight = self.contact(pair.square);
+                let middle = from + atom.arm - 0.5 * pair.between;
+                sums.count += weight;
+                sums.sum += weight * middle;
+                sums.squares += weight * middle.norm_squared();
+            },
+            #[inline(always)]
+            |(), _| (),
+        );
+        sums
     }
 
     /// Weight of a pair by the square of its distance (Å²): from 1 to 0 at the reach, where its slope is 0 as well.
@@ -229,47 +256,10 @@ impl Atoms {
     }
 }
 
-/// Sums over the weighted middles of all pairs.
-struct Middles<'a> {
-    atoms: &'a Atoms,
-    workspace: &'a mut Workspace,
-}
-
 /// Sums of weights, of weighted middles (Å) and of the squares of their distances from the receptor's centre (Å²).
+#[derive(Default)]
 struct MiddleSums {
     count: f64,
     sum: Vector3<f64>,
     squares: f64,
-}
-
-impl WithSimd for Middles<'_> {
-    type Output = MiddleSums;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> MiddleSums {
-        let mut sums = MiddleSums {
-            count: 0.0,
-            sum: Vector3::zeros(),
-            squares: 0.0,
-        };
-        let from = self.workspace.middle;
-        self.atoms.visit(
-            simd,
-            self.workspace,
-            &Move::none(),
-            #[inline(always)]
-            || (),
-            #[inline(always)]
-            |(), atom, pair| {
-                let weight = self.atoms.contact(pair.square);
-                let middle = from + atom.arm - 0.5 * pair.between;
-                sums.count += weight;
-                sums.sum += weight * middle;
-                sums.squares += weight * middle.norm_squared();
-            },
-            #[inline(always)]
-            |(), _| (),
-        );
-        sums
-    }
 }

@@ -1,7 +1,7 @@
 //! Pose term `relaxed`: energy of atom pairs with a penalty on overlap, after a small rigid move that lowers it.
 //!
 //! Unbound surfaces overlap at some places of a grid pose and leave gaps at others, in native poses too. So an energy
-//! that penalises overlap says little about a pose as it stands. It says more about one half an Ångström beside it.
+//! that penalises overlap says little about the pose itself. It says more about one half an Ångström beside it.
 //! [`Relaxation`] finds that pose by a few damped Gauss-Newton steps. Rigid-body minimisation does the same before
 //! force fields rank poses (Li, Chen & Weng, Proteins 53 (2003) 693-707).
 //!
@@ -17,11 +17,12 @@ use self::list::{Atoms, Interface, Site};
 use super::TermDefinition;
 use super::atom_pair::{AtomPairPotential, EnergyTable, SMOOTH_REACH};
 use crate::blocks::Blocks;
-use crate::rigid_move::{Derivatives, Move, center};
+use crate::rigid_move::{Derivatives, Move, center, heavy_atoms};
 use crate::se3::Pose;
+use crate::vectorized::with_simd;
 use knotdock_structures::Knots;
 use nalgebra::{Matrix3, Vector3, Vector6};
-use pulp::{Arch, Simd, WithSimd};
+use pulp::Simd;
 
 /// Definition of the term.
 pub(super) const TERM: TermDefinition = TermDefinition {
@@ -43,24 +44,20 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 
 /// Depth in Å by which two atoms may overlap at no cost.
 const OVERLAP: f64 = 0.1;
-/// Stiffness of further overlap, RT per Å². It is soft, because atoms of unbound surfaces stand where the other
-/// body's will be.
+/// Stiffness of further overlap, RT per Å². It is soft, because atoms of unbound surfaces are in the way of the other
+/// body's.
 const STIFFNESS: f64 = 0.8;
 /// Stiffness during the descent. It is softer still, so that single overlaps do not hold back the whole interface.
 const SOFT_CORE_STIFFNESS: f64 = 0.2;
 /// Overlap in Å from which a pair adds its whole stiffness to the curvature that a step reads.
 const FULL_STIFFNESS: f64 = 0.5;
-/// Largest radius in Å of a hydrogen. Hydrogens overlap the atoms that they bond to, so they do not count where a
-/// file keeps them.
-const HYDROGEN: f64 = 1.15;
-
 /// Two bodies prepared for relaxing poses.
 ///
 /// The energy of a pose in RT is a sum over pairs of atoms at distance d, of radii r and kinds a and b:
 ///
 /// `E = sum of E_ab(d) + 0.8 RT/Å² max(0, r_a + r_b - 0.1 Å - d)²`
 ///
-/// E_ab is the atom pair potential as [`super::AtomPairs`] reads it; atoms without a kind only repel. The pose
+/// E_ab is the atom pair potential as the term `atom_pair` reads it; atoms without a kind only repel. The pose
 /// descends by less than 2 Å on a smooth energy of a quarter of that stiffness, to E(end). Its score is
 /// `-weight min(E(start), E(end))`.
 pub(super) struct Relaxation {
@@ -117,10 +114,10 @@ impl Relaxation {
         -self.weight * self.relax(pose, workspace).energy
     }
 
-    /// Energy of a pose as it stands in RT.
+    /// Energy of a pose without a move in RT.
     #[cfg(test)]
     pub fn energy(&self, pose: &Pose) -> f64 {
-        let (start, none) = (self.atoms.start(pose), Move::none());
+        let (start, none) = (self.atoms.start(pose), Move::default());
         let mut workspace = Workspace::default();
         self.atoms
             .collect(&start, &Vector3::zeros(), &none, &mut workspace);
@@ -129,7 +126,7 @@ impl Relaxation {
 
     /// Relaxed pose with its energy, which is never above that of `pose`.
     pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
-        let (start, none) = (self.atoms.start(pose), Move::none());
+        let (start, none) = (self.atoms.start(pose), Move::default());
         self.atoms
             .collect(&start, &Vector3::zeros(), &none, workspace);
         let Some(Interface { middle, radius }) = self.atoms.interface(workspace) else {
@@ -141,7 +138,7 @@ impl Relaxation {
         let widest = self.atoms.widest(&start, &middle);
         let before = self.collected_energy(workspace, &none);
         let (mut at, mut collected) = (none, none);
-        for longest in LONGEST {
+        for longest in MAX_STEPS {
             at = self.slope(workspace, &at).step(&at, radius, longest);
             self.atoms
                 .renew(&mut collected, &at, widest, &start, workspace);
@@ -178,21 +175,68 @@ impl Relaxation {
         at: &Move,
         value: impl Fn(&Site, &Site, f64) -> f64,
     ) -> f64 {
-        Arch::new().dispatch(Sum {
-            atoms: &self.atoms,
-            workspace,
-            at,
-            value,
-        })
+        let atoms = &self.atoms;
+        with_simd!(
+            <'a, F: Fn(&Site, &Site, f64) -> f64>(
+                atoms: &'a Atoms, workspace: &'a mut Workspace, at: &'a Move, value: F
+            ) -> f64,
+            |simd| {
+                let mut total = 0.0;
+                atoms.visit(
+                    simd,
+                    workspace,
+                    at,
+                    #[inline(always)]
+                    || 0.0,
+                    #[inline(always)]
+                    |sum, atom, pair| *sum += value(pair.receptor, &atom.site, pair.square),
+                    #[inline(always)]
+                    |sum, _| total += sum,
+                );
+                total
+            }
+        )
     }
 
     /// Slope of the energy of the descent at a move.
     fn slope(&self, workspace: &mut Workspace, at: &Move) -> Slope {
-        Arch::new().dispatch(SlopeOf {
-            relaxation: self,
+        let relaxation = self;
+        with_simd!(
+            <'a>(relaxation: &'a Relaxation, workspace: &'a mut Workspace, at: &'a Move) -> Slope,
+            |simd| relaxation.slope_with(simd, workspace, at)
+        )
+    }
+
+    #[inline(always)]
+    fn slope_with<S: Simd>(&self, simd: S, workspace: &mut Workspace, at: &Move) -> Slope {
+        let atoms = &self.atoms;
+        let mut slope = Slope::default();
+        atoms.visit(
+            simd,
             workspace,
             at,
-        })
+            AtomSlope::default,
+            #[inline(always)]
+            |sums, atom, pair| {
+                let Soft {
+                    rise, stiffness, ..
+                } = self.soft(pair.receptor, &atom.site, pair.square);
+                sums.gradient += rise * pair.between;
+                if stiffness > 0.0 {
+                    sums.curvature += (stiffness * pair.between) * pair.between.transpose();
+                }
+                sums.contacts += atoms.contact(pair.square);
+            },
+            #[inline(always)]
+            |sums, arm| {
+                if sums.contacts > 0.0 {
+                    slope.contacts += sums.contacts;
+                    // Each body makes half of a rotation about the middle between their places.
+                    slope.add(&(arm + 0.5 * at.shift), &sums.gradient, &sums.curvature);
+                }
+            },
+        );
+        slope
     }
 
     /// Energy of two atoms in RT at a distance.
@@ -241,103 +285,19 @@ struct Soft {
     stiffness: f64,
 }
 
-/// A sum over pairs of atoms at a move.
-struct Sum<'a, F> {
-    atoms: &'a Atoms,
-    workspace: &'a mut Workspace,
-    at: &'a Move,
-    value: F,
-}
-
-impl<F: Fn(&Site, &Site, f64) -> f64> WithSimd for Sum<'_, F> {
-    type Output = f64;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> f64 {
-        let mut total = 0.0;
-        self.atoms.visit(
-            simd,
-            self.workspace,
-            self.at,
-            #[inline(always)]
-            || 0.0,
-            #[inline(always)]
-            |sum, atom, pair| *sum += (self.value)(pair.receptor, &atom.site, pair.square),
-            #[inline(always)]
-            |sum, _| total += sum,
-        );
-        total
-    }
-}
-
-/// The slope of the energy of the descent at a move.
-struct SlopeOf<'a> {
-    relaxation: &'a Relaxation,
-    workspace: &'a mut Workspace,
-    at: &'a Move,
-}
-
-/// What the pairs of one ligand atom add up to.
+/// Sums over the pairs of one ligand atom.
+#[derive(Default)]
 struct AtomSlope {
     gradient: Vector3<f64>,
     curvature: Matrix3<f64>,
     contacts: f64,
 }
 
-impl WithSimd for SlopeOf<'_> {
-    type Output = Slope;
-
-    #[inline(always)]
-    fn with_simd<S: Simd>(self, simd: S) -> Slope {
-        let Self {
-            relaxation,
-            workspace,
-            at,
-        } = self;
-        let atoms = &relaxation.atoms;
-        let mut slope = Slope::zero();
-        atoms.visit(
-            simd,
-            workspace,
-            at,
-            #[inline(always)]
-            || AtomSlope {
-                gradient: Vector3::zeros(),
-                curvature: Matrix3::zeros(),
-                contacts: 0.0,
-            },
-            #[inline(always)]
-            |sums, atom, pair| {
-                let Soft {
-                    rise, stiffness, ..
-                } = relaxation.soft(pair.receptor, &atom.site, pair.square);
-                sums.gradient += rise * pair.between;
-                if stiffness > 0.0 {
-                    sums.curvature += (stiffness * pair.between) * pair.between.transpose();
-                }
-                sums.contacts += atoms.contact(pair.square);
-            },
-            #[inline(always)]
-            |sums, arm| {
-                if sums.contacts > 0.0 {
-                    slope.contacts += sums.contacts;
-                    // Each body makes half of a rotation about the middle between their places.
-                    slope.add(&(arm + 0.5 * at.shift), &sums.gradient, &sums.curvature);
-                }
-            },
-        );
-        slope
-    }
-}
-
 /// The atoms of a set of knots other than hydrogens, relative to its centre. `unknown` is the kind of atoms without a
 /// kind.
 fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f64>, Site)> {
-    let atoms = knots.centers.iter().zip(&knots.radii).enumerate();
-    let atoms = atoms.filter(|(_, (_, radius))| **radius > HYDROGEN);
-    atoms
-        .map(|(index, (&x, &radius))| {
-            let position = Vector3::from(x) - middle;
+    heavy_atoms(knots, middle)
+        .map(|(index, position, radius)| {
             let kind = knots.atom_kinds.get(index).copied().flatten();
             let kind = kind.map_or(unknown, |kind| usize::from(kind).min(unknown));
             (position, Site { radius, kind })
@@ -348,12 +308,13 @@ fn sites(knots: &Knots, middle: Vector3<f64>, unknown: usize) -> Vec<(Vector3<f6
 /// Longest steps in Å, one after the other; their sum bounds the whole move.
 ///
 /// The length of a step is the root of the squares of the shift and of the arc at the interface's radius.
-pub(super) const LONGEST: [f64; 6] = [0.7, 0.455, 0.296, 0.192, 0.125, 0.081];
-/// Damping of a step in RT/Å²: a part for each contact and a constant. It stands for the curvature of the atom pair
+pub(super) const MAX_STEPS: [f64; 6] = [0.7, 0.455, 0.296, 0.192, 0.125, 0.081];
+/// Damping of a step in RT/Å²: a part for each contact and a constant. It replaces the curvature of the atom pair
 /// potential, which has either sign.
 const DAMPING: [f64; 2] = [0.05, 2.0];
 
 /// Derivatives of the energy of a move, and its contacts.
+#[derive(Default)]
 pub(super) struct Slope {
     /// Derivatives; the curvature is that of the overlaps along the lines between their atoms: positive semidefinite.
     pub by_step: Derivatives,
@@ -362,14 +323,6 @@ pub(super) struct Slope {
 }
 
 impl Slope {
-    /// Slope of nothing.
-    pub fn zero() -> Self {
-        Self {
-            by_step: Derivatives::zero(),
-            contacts: 0.0,
-        }
-    }
-
     /// Adds an atom at `arm`, with the gradient and curvature by its position.
     #[inline(always)]
     pub fn add(&mut self, arm: &Vector3<f64>, gradient: &Vector3<f64>, curvature: &Matrix3<f64>) {

@@ -1,7 +1,7 @@
 //! Energies against the definition, slopes against differences, and where descents end, with and without noise.
 
 use super::*;
-use crate::terms::pose::atom_pair::AtomPairs;
+use crate::terms::pose::atom_pair;
 use crate::test_support::Numbers;
 
 /// Atoms of all kinds on a jittered lattice within a ball, at least 2.4 Å from each other.
@@ -54,8 +54,8 @@ fn direct(a: &Knots, b: &Knots, pose: &Pose) -> f64 {
             sum += 0.8 * (r + s - 0.1 - distance).max(0.0).powi(2);
         }
     }
-    let pairs = AtomPairs::new(a, b, &AtomPairPotential::default(), 1.0);
-    sum - pairs.score(pose)
+    let pairs = atom_pair::term([a, b], &AtomPairPotential::default(), 1.0);
+    sum - pairs(pose, &mut Workspace::default())
 }
 
 #[test]
@@ -82,7 +82,7 @@ fn collected(relaxation: &Relaxation, pose: &Pose) -> Option<(Workspace, Interfa
     let start = relaxation.atoms.start(pose);
     relaxation
         .atoms
-        .collect(&start, &Vector3::zeros(), &Move::none(), &mut workspace);
+        .collect(&start, &Vector3::zeros(), &Move::default(), &mut workspace);
     let interface = relaxation.atoms.interface(&mut workspace)?;
     Some((workspace, interface))
 }
@@ -96,7 +96,7 @@ fn the_slope_is_that_of_the_energy() {
         Vector3::new(0.3, -0.2, 0.1),
         Vector3::new(0.02, 0.05, -0.03),
     );
-    for at in [Move::none(), Move::none().then_by_halves(shift, turn)] {
+    for at in [Move::default(), Move::default().then_by_halves(shift, turn)] {
         let slope = relaxation.slope(&mut workspace, &at);
         let mut energy =
             |shift, turn| soft_energy(&relaxation, &mut workspace, &at.then_by_halves(shift, turn));
@@ -128,7 +128,7 @@ fn collected_pairs_add_up_to_the_energy() {
             assert_eq!(energy, 0.0);
             continue;
         };
-        let mut was = Move::none();
+        let mut was = Move::default();
         let start = relaxation.atoms.start(&pose);
         let widest = relaxation.atoms.widest(&start, &middle);
         let steps = [0.0, 0.1, 0.3, 1.2].map(|by| Vector3::new(by, 0.4 * by, -by));
@@ -167,7 +167,7 @@ fn poses_come_to_rest_nearby_and_lower() {
         // No atom of this small a ligand is so far out that the arc bound lets it go twice as far.
         for &y in &ligand.centers {
             let moved = Vector3::from(relaxed.pose.apply(y)) - Vector3::from(pose.apply(y));
-            assert!(moved.norm() < 3.0 * LONGEST.iter().sum::<f64>());
+            assert!(moved.norm() < 3.0 * MAX_STEPS.iter().sum::<f64>());
         }
     }
     assert!(gained > 30, "{gained}");
@@ -227,7 +227,7 @@ fn an_overlap_gives_way() {
     assert_eq!(pair.energy(&pose(3.5)), 0.0);
     for start in [1.0, 2.5, 3.2, 3.6] {
         let mut d: f64 = start;
-        for longest in LONGEST {
+        for longest in MAX_STEPS {
             let lack = (1.0 - d * d / 12.25).max(0.0);
             let part = (1.75 * lack / 0.5).min(1.0);
             let weight = (1.0 - d * d / (6.5 * 6.5)).powi(2);

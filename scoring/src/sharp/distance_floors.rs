@@ -5,14 +5,14 @@ use nalgebra::Vector3;
 /// Least edge of a cell, Å.
 const EDGE: f64 = 2.5;
 /// Most cells: where a body is spread out they grow.
-const MOST_CELLS: f64 = 4e6;
+const MAX_CELLS: f64 = 4e6;
 /// Distance from which cells are only known to be far, Å.
 const FAR: f64 = 16.0;
 
 /// Lower bounds of the distance to a body's atoms, by cells of space.
 ///
 /// Most atoms of a ligand are far from the receptor, and a look at one cell shows it.
-pub(super) struct Nearness {
+pub(super) struct DistanceFloors {
     low: Vector3<f64>,
     edge: f64,
     counts: [usize; 3],
@@ -20,7 +20,7 @@ pub(super) struct Nearness {
     bounds: Vec<f32>,
 }
 
-impl Nearness {
+impl DistanceFloors {
     /// Bounds about some points (Å).
     pub fn new(points: impl Iterator<Item = Vector3<f64>> + Clone) -> Self {
         let ends = points.clone().fold(None, |ends, point| {
@@ -31,7 +31,7 @@ impl Nearness {
         let low = low.add_scalar(-FAR);
         let extent = (high - low).add_scalar(FAR);
         let mut edge = EDGE;
-        while extent.iter().map(|x| x / edge + 1.0).product::<f64>() > MOST_CELLS {
+        while extent.iter().map(|x| x / edge + 1.0).product::<f64>() > MAX_CELLS {
             edge *= 1.5;
         }
         let counts: [usize; 3] = std::array::from_fn(|axis| (extent[axis] / edge) as usize + 1);
@@ -83,8 +83,8 @@ mod tests {
     use super::*;
     use crate::test_support::Numbers;
 
-    /// What is excluded is farther than the reach, and most of what is far is excluded. Parts of a body may lie far
-    /// from each other.
+    /// Excluded places are farther than the reach, and most far places are excluded. Parts of a body may be far from each
+    /// other.
     #[test]
     fn only_what_is_far_is_excluded() {
         for spread in [1.0, 1e5] {
@@ -92,8 +92,8 @@ mod tests {
             let mut point = |size: f64| Vector3::from_fn(|_, _| size * (numbers.next() - 0.5));
             let mut atoms: Vec<Vector3<f64>> = (0..200).map(|_| point(30.0)).collect();
             atoms.push(Vector3::new(spread, 0.0, 0.0));
-            let near = Nearness::new(atoms.iter().copied());
-            assert!(near.bounds.len() as f64 <= MOST_CELLS);
+            let near = DistanceFloors::new(atoms.iter().copied());
+            assert!(near.bounds.len() as f64 <= MAX_CELLS);
             let (mut far, mut excluded) = (0, 0);
             for _ in 0..2000 {
                 let place = point(90.0);
