@@ -42,10 +42,7 @@ pub fn enclosing(a: &Ball, b: &Ball) -> Ball {
     );
     // Rounding of the centre must not let a child peep out.
     let reach = |ball: &Ball| distance(center, ball.center) + ball.radius;
-    Ball {
-        center,
-        radius: reach(a).max(reach(b)) * (1.0 + 4.0 * f64::EPSILON),
-    }
+    Ball::new(center, reach(a).max(reach(b)) * (1.0 + 4.0 * f64::EPSILON))
 }
 
 /// A ball not yet merged, and the partner with which it makes the least ball.
@@ -170,10 +167,7 @@ mod tests {
     use super::*;
 
     fn ball(x: f64, y: f64, z: f64, radius: f64) -> Ball {
-        Ball {
-            center: [x, y, z],
-            radius,
-        }
+        Ball::new([x, y, z], radius)
     }
 
     #[test]

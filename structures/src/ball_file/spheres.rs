@@ -126,10 +126,10 @@ fn sphere(node: &Node) -> Result<Ball, Error> {
     let [x, y, z] = &parts[..] else {
         return Err(missing());
     };
-    Ok(Ball {
-        center: [scalar(x, "x")?, scalar(y, "y")?, scalar(z, "z")?],
-        radius: scalar(radius, "radius")?,
-    })
+    Ok(Ball::new(
+        [scalar(x, "x")?, scalar(y, "y")?, scalar(z, "z")?],
+        scalar(radius, "radius")?,
+    ))
 }
 
 /// Deepest nesting that is read; lists of spheres have about five levels.

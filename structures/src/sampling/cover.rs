@@ -81,10 +81,7 @@ pub fn cover(solid: &Solid, field: &DepthField, balls: &mut Vec<Ball>) -> Coveri
         if added.is_near(point, epsilon) {
             continue;
         }
-        let ball = Ball {
-            center: point,
-            radius: solid.distance(point),
-        };
+        let ball = Ball::new(point, solid.distance(point));
         if ball.radius > 0.0 {
             added.push(ball);
             balls.push(ball);

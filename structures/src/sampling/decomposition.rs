@@ -136,10 +136,7 @@ fn take_nodes(field: &DepthField, nodes: &[usize], priorities: &[f64], mu: f64) 
         if struck[node] {
             continue;
         }
-        let ball = Ball {
-            center: field.grid.node(node),
-            radius: field.depth[node],
-        };
+        let ball = Ball::new(field.grid.node(node), field.depth[node]);
         field
             .grid
             .visit_ball(ball.center, ball.radius, |other, squared| {
@@ -233,17 +230,11 @@ mod tests {
     #[test]
     fn what_is_dropped_lies_in_a_ball_that_is_kept() {
         let epsilon = 0.1;
-        let one = [Ball {
-            center: [0.0; 3],
-            radius: 1.0,
-        }];
+        let one = [Ball::new([0.0; 3], 1.0)];
         assert_eq!(reduce(&one, epsilon), [0]);
         let chain: Vec<Ball> = (0..20)
             .map(|i| f64::from(i) * 0.08)
-            .map(|x| Ball {
-                center: [x, 0.0, 0.0],
-                radius: 1.0 + 0.01 * x,
-            })
+            .map(|x| Ball::new([x, 0.0, 0.0], 1.0 + 0.01 * x))
             .collect();
         for pair in chain.windows(2) {
             assert!(pair[1].grown(epsilon).holds(&pair[0]));
@@ -252,10 +243,7 @@ mod tests {
             // Above and below the size from which balls are kept separate.
             let balls: Vec<Ball> = chain
                 .iter()
-                .map(|ball| Ball {
-                    center: ball.center,
-                    radius: scale * ball.radius,
-                })
+                .map(|ball| Ball::new(ball.center, scale * ball.radius))
                 .collect();
             let kept = reduce(&balls, epsilon);
             assert!(kept.len() < balls.len());

@@ -34,10 +34,7 @@ pub fn lattice(field: &DepthField, per_cell: usize, radius: f64) -> Vec<Ball> {
     }
     sums.into_iter()
         .filter(|(_, count)| *count > 0)
-        .map(|(sum, count)| Ball {
-            center: sum.map(|value| value / count as f64),
-            radius,
-        })
+        .map(|(sum, count)| Ball::new(sum.map(|value| value / count as f64), radius))
         .collect()
 }
 

@@ -11,10 +11,9 @@
 //! decide, since many files have chains merged.
 
 use crate::molecule::chemistry::{CARBOXYL, Labels, TERMINI_PKA, amino_terminus};
-use crate::molecule::model::{
-    Atom, GroupKind, MAX_CAP_LENGTH, Molecule, Residue, ResidueKey, squared_distance,
-};
+use crate::molecule::model::{Atom, GroupKind, MAX_CAP_LENGTH, Molecule, Residue, ResidueKey};
 use crate::neighbours::SpatialHash;
+use crate::vector::squared_distance;
 
 /// Longest C-N distance in Å of a peptide bond, with room for poor structures.
 pub(crate) const BOND: f64 = 2.5;

@@ -6,8 +6,9 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use crate::molecule::chemistry::{BOND, Caps};
-use crate::molecule::model::{Atom, Molecule, Residue, ResidueKey, residues, squared_distance};
+use crate::molecule::model::{Atom, Molecule, Residue, ResidueKey, residues};
 use crate::neighbours::SpatialHash;
+use crate::vector::squared_distance;
 
 /// Largest distance of adjacent residues, in Å.
 const STRETCHED: f64 = 3.8;

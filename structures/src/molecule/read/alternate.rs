@@ -2,10 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use crate::molecule::model::{
-    AlternateChoice, Atom, DropKind, Place, number_text, residue_key, squared_distance,
-};
+use crate::molecule::model::{AlternateChoice, Atom, DropKind, Place, number_text, residue_key};
 use crate::molecule::read::{AlternateLocation, Drops};
+use crate::vector::squared_distance;
 
 /// A position in a chain. The residue's name is left out: alternate locations may differ in it (microheterogeneity), and
 /// one choice must hold for both names.

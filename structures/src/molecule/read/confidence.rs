@@ -19,10 +19,11 @@
 //! | atoms with many others about them | higher | lower |
 
 use crate::molecule::model::{
-    Atom, Confidence, ConfidenceSource, DropKind, Residue, residues, show_chain, squared_distance,
+    Atom, Confidence, ConfidenceSource, DropKind, Residue, residues, show_chain,
 };
 use crate::molecule::read::{Drops, ReadOptions};
 use crate::neighbours::SpatialHash;
+use crate::vector::{bounds, squared_distance};
 use std::collections::HashSet;
 
 /// Provenance of the coordinates, as the file states it.
@@ -50,15 +51,6 @@ pub const LOW: f64 = 50.0;
 /// Least share of the residues that must reach the least pLDDT for the user's word to be taken.
 const MIN_REACHING: f64 = 0.25;
 
-/// Lowest and highest B value.
-fn bounds(atoms: &[Atom]) -> [f64; 2] {
-    let start = [f64::INFINITY, f64::NEG_INFINITY];
-    let column = atoms.iter().map(|atom| atom.b_factor);
-    column.fold(start, |[low, high], value| {
-        [low.min(value), high.max(value)]
-    })
-}
-
 /// pLDDT, 0 to 100, of each of the residues, and how it was detected.
 ///
 /// # Errors
@@ -69,7 +61,7 @@ fn values(
     provenance: Provenance,
     options: &ReadOptions,
 ) -> Result<(ConfidenceSource, Vec<f64>), String> {
-    let [lowest, highest] = bounds(atoms);
+    let ([lowest], [highest]) = bounds(atoms.iter().map(|atom| [atom.b_factor]));
     let scale = if highest <= 1.0 { 100.0 } else { 1.0 };
     let of_residue = |residue: &Residue<'_>| {
         let sum: f64 = residue.members(atoms).map(|atom| atom.b_factor).sum();

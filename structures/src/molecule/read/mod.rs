@@ -97,15 +97,7 @@ impl Molecule {
     /// # Errors
     /// As [`read`].
     pub fn read(file: &str) -> Result<Self, Error> {
-        Self::read_with(file, &ReadOptions::default())
-    }
-
-    /// As [`Self::read`], by other options.
-    ///
-    /// # Errors
-    /// As [`read`].
-    pub fn read_with(file: &str, options: &ReadOptions) -> Result<Self, Error> {
-        read(&InputSpec::parse(file)?, options)
+        read(&InputSpec::parse(file)?, &ReadOptions::default())
     }
 }
 

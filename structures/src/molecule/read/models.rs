@@ -4,11 +4,11 @@
 //! of a complex with a partner in each lie beside one another: two atoms that are not bonded keep a distance of some
 //! 3 Å. So the models of a file are parts where hardly any atom shares a cell of 2 Å with an atom of another model.
 
-use crate::molecule::model::{JoinedModels, count, residue_key, squared_distance};
+use crate::molecule::model::{JoinedModels, count, residue_key};
 use crate::molecule::read::Record;
 use crate::molecule::read::assembly::copy_name;
-use crate::neighbours::SpatialHash;
-use crate::neighbours::cell::{Cell, cell_of};
+use crate::neighbours::{Cell, SpatialHash, cell_of};
+use crate::vector::squared_distance;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// Edge of the cells, in Å. Within a protein there is an atom for every 16 Å³, so that half of these cells of 8 Å³ hold

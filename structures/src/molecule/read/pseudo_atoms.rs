@@ -13,8 +13,9 @@ use crate::molecule::chemistry::{
     NameColumn, amino_acid_type, column_symbol, is_amino_acid, is_site_name, is_water, mass_center,
     resolve,
 };
-use crate::molecule::model::{Atom, ResidueKey, residue_key, squared_distance};
+use crate::molecule::model::{Atom, ResidueKey, residue_key};
 use crate::molecule::read::Record;
+use crate::vector::squared_distance;
 
 /// Markers: residue name and the names of its atoms, digits behind them aside.
 const MARKERS: [(&str, &[&str]); 12] = [

@@ -5,9 +5,10 @@ use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use crate::molecule::chemistry::{cofactor, is_water, side_chain};
 use crate::molecule::model::{
-    Atom, GroupKind, Residue, agreeing, count, examples, residue_key, show_chain, squared_distance,
+    Atom, GroupKind, Residue, agreeing, count, examples, residue_key, show_chain,
 };
 use crate::neighbours::SpatialHash;
+use crate::vector::squared_distance;
 
 /// All warnings.
 pub(crate) fn warnings(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> {
