@@ -9,7 +9,6 @@ mod mmcif;
 mod models;
 mod pdb;
 mod pdb_columns;
-mod pdbtbx;
 mod policy;
 mod pseudo_atoms;
 mod record;
@@ -183,7 +182,7 @@ fn read_parts(
             false => source::not_a_structure(&spec.path),
         });
     }
-    let mut records = pdbtbx::records(format, &mut contents)?;
+    let mut records = std::mem::take(&mut contents.records);
     let mut drops = Drops {
         report: std::mem::take(&mut contents.report),
         fates,

@@ -1,4 +1,4 @@
-//! Atoms as a file has them, and what the file says beside them.
+//! Atoms as a file has them, and its other statements about them.
 
 use crate::Error;
 use crate::molecule::chemistry::NameColumn;
@@ -13,17 +13,15 @@ pub(crate) struct Record {
     pub(crate) atom: Atom,
     /// Its model, counted from 1 in the order of the file.
     pub(crate) model: usize,
-    /// What the archive calls the chain (`label_asym_id`), if that is another name.
+    /// The archive's name of the chain (`label_asym_id`), if it is another.
     pub(crate) archive_chain: Option<String>,
     pub(crate) name_column: NameColumn,
 }
 
-/// The atoms of the models that are read, and what the file says beside them.
+/// The atoms of the models that are read, and the file's other statements.
 #[derive(Debug, Default)]
 pub(crate) struct FileContents {
-    /// Text that pdbtbx reads in the file's own format; atom i has the serial number i.
-    pub(crate) text: String,
-    /// The atoms by their serial number. pdbtbx adds what it reads.
+    /// The atoms in the order of the file.
     pub(crate) records: Vec<Record>,
     /// Models in the file.
     pub(crate) models: usize,
