@@ -5,7 +5,7 @@ use crate::vector::{dot, subtract};
 /// Conformers of one segment of a chain, in a frame that moves with the body. All are equally likely.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Conformers {
-    /// Where the segment begins, in the file's frame, Å.
+    /// Beginning of the segment, in the file's frame, Å.
     pub origin: [f64; 3],
     /// Unit vectors of the segment's own frame, in the file's frame.
     pub axes: [[f64; 3]; 3],

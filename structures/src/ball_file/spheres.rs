@@ -1,7 +1,7 @@
 //! Sphere lists of robot descriptions.
 //!
 //! A sphere is a mapping with `radius` and `center` (cuRobo) or `origin` (foam). The innermost key above a list of
-//! spheres names their link, but for foam's `spheres`, which stands in a link of its own or in one of several levels of
+//! spheres names their link, but for foam's `spheres`, which is in a link or in one of several levels of
 //! detail. Of levels the last, finest one is read.
 //!
 //! JSON is read as the YAML that it is.

@@ -5,7 +5,7 @@ use crate::vector::bounds;
 /// Things in a leaf at most by default.
 pub(crate) const LEAF: usize = 8;
 
-/// Some of the things: the box of their places, and what is known of all of them.
+/// Some of the things: the box of their places, and a value computed from all of them.
 #[derive(Debug)]
 pub(crate) struct BoxNode<K, const N: usize = 3> {
     pub low: [f64; N],

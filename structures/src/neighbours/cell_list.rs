@@ -5,7 +5,7 @@ use crate::vector::bounds;
 /// Most cells of a list: where points are more widely spaced, its cells grow.
 const MAX_CELLS: f64 = 4e6;
 
-/// A point of a list, and what belongs to it.
+/// A point of a list, with its item.
 #[derive(Clone, Copy, Debug)]
 pub struct Member<T> {
     /// Coordinates, in the unit of the list.

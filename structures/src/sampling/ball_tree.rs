@@ -57,7 +57,7 @@ impl BallTree {
         self.distance_within(point, enough, f64::INFINITY)
     }
 
-    /// As [`Self::distance`], never more than `at_most`, which spares the search for what lies farther.
+    /// As [`Self::distance`], never more than `at_most`, which spares the search of farther balls.
     pub fn distance_within(&self, point: [f64; 3], enough: f64, at_most: f64) -> f64 {
         let mut best = at_most;
         if let Some(root) = self.nodes.first() {

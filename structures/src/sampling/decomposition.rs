@@ -1,22 +1,21 @@
-//! Spherical decomposition: B&I, Algorithm 1, with what its listing gets wrong put right.
+//! Spherical decomposition: B&I, Algorithm 1, with corrections of its listing.
 //!
 //! 1. **A1.** Nodes inside are taken by falling priority. Each gives the ball of its distance to the surface and
 //!    marks the nodes in it as covered. It removes from the queue the nodes x' with r(x') <= r(x) and |x - x'| -
 //!    (r(x) - r(x')) <= mu r(x'). This ends when every inside node is covered. Then [`super::cover`] adds balls until
 //!    no point of the surface is farther than eps from A1.
 //! 2. **A2** is A1 grown by eps.
-//! 3. **A3** is A2 without the balls whose original lies in the grown ball of one that is kept, the largest first.
+//! 3. **A3** is A2 without the balls whose original is in the grown ball of one that is kept, the largest first.
 //!
-//! What differs from the listing, and why:
+//! Differences from the listing, with reasons:
 //!
 //! - *r(x') <= r(x).* The listing takes |r(x) - r(x')|, by which a small ball strikes a larger one that contains it.
 //! - *The queue cannot run dry too early.* With the above and mu <= 1, a struck node is covered:
 //!   |x - x'| <= r(x) - (1 - mu) r(x').
-//! - *One ball, not a union.* The paper's eq. 57 drops a ball that lies in the union of the other grown balls. Its
-//!   listing, its proof of Proposition 3 and this code drop one that lies in a single other: a stricter test, which
-//!   keeps more balls.
-//! - *Kept, and the largest first.* The listing drops a ball that lies in any grown ball, even in its own. It drops
-//!   chains of balls of which each lies in the next, so that nothing need be left near the first.
+//! - *One ball, not a union.* The paper's eq. 57 drops a ball in the union of the other grown balls. Its listing, its
+//!   proof of Proposition 3 and this code drop one in a single other: a stricter test, which keeps more balls.
+//! - *Kept, and the largest first.* The listing drops a ball in any grown ball, even in its own, and chains of balls
+//!   each of which is in the next, so that nothing need be left near the first.
 //! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false where the node nearest
 //!   to x lies outside S. Under a flat face just below a plane of nodes X ends sqrt(2) eps away. Its Propositions 1
 //!   to 3 rest on it.
@@ -27,8 +26,7 @@
 use crate::ball::Ball;
 use crate::mesh::Solid;
 use crate::neighbours::SpatialHash;
-use crate::sampling::cover;
-use crate::sampling::cover::Covering;
+use crate::sampling::cover::{self, Covering};
 use crate::sampling::grid::DepthField;
 use crate::sampling::sample::SampleError;
 use crate::sampling::skeletal_density::{Priority, priorities};
@@ -60,7 +58,7 @@ pub struct Decomposition {
     pub a2: Vec<Ball>,
     /// `a2` without those that others make redundant.
     pub a3: Vec<Ball>,
-    /// What was added to `a1` after the nodes were covered.
+    /// Balls added to `a1` after the nodes were covered.
     pub covering: Covering,
 }
 
@@ -105,7 +103,7 @@ pub(crate) fn decompose_in_order(
     })
 }
 
-/// Step 1 on the grid of any depth, the largest balls first: every node inside lies in one of the balls, and no ball
+/// Step 1 on the grid of any depth, the largest balls first: every node inside is in one of the balls, and no ball
 /// reaches out of the solid.
 pub fn cover_nodes(field: &DepthField, mu: f64) -> Vec<Ball> {
     let nodes = field.inside();

@@ -141,8 +141,8 @@ pub struct DepthField {
 impl DepthField {
     /// Measures the depth at every node, rows in parallel.
     ///
-    /// Along a row the last distance plus the spacing bounds the next one. In a closed mesh two neighbours lie on one
-    /// side when their distances together exceed the spacing, so winding numbers are taken near the surface only.
+    /// Along a row the last distance plus the spacing bounds the next one. In a closed mesh two neighbours are on one
+    /// side if their distances together exceed the spacing, so winding numbers are taken near the surface only.
     pub fn new(solid: &Solid, grid: Grid) -> Self {
         let n = grid.per_axis();
         let h = grid.spacing();

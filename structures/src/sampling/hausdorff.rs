@@ -9,7 +9,7 @@
 //!
 //! *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid. It is taken over the same
 //! grid's points in the balls, and over the point of each ball's sphere on the far side of the surface point nearest to
-//! its centre. Where that leaves room, the whole sphere is searched (`outward`). A ball of radius R at depth d reaches
+//! its centre. If that leaves room, the whole sphere is searched (`outward`). A ball of radius R at depth d reaches
 //! no farther out than R - d, which is reported as the bound.
 //!
 //! Solids, not their boundaries, are compared, as in the paper's propositions.
@@ -19,8 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use crate::ball::Ball;
-use crate::mesh::Solid;
-use crate::mesh::is_beside;
+use crate::mesh::{Solid, is_beside};
 use crate::sampling::ball_tree::BallTree;
 use crate::sampling::beyond::volume_beyond;
 use crate::sampling::cover::SAMPLE_SPACING;

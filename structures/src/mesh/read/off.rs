@@ -65,8 +65,8 @@ pub fn parse(text: &str) -> Result<Soup, Error> {
     by_line_or_stream(&lines, by_line, &attempts, body)
 }
 
-/// How many numbers follow the coordinates of a vertex, by what stands before `OFF`: normals, colours with or without
-/// transparency, places in a picture. None where the file is not read.
+/// Count of numbers after the coordinates of a vertex, by the letters before `OFF`: normals, colours with or without
+/// transparency, places in a picture. `None` if the file is not read.
 fn numbers_after(prefix: &str) -> Option<Vec<usize>> {
     let left = prefix.strip_prefix("ST").unwrap_or(prefix);
     let is_known = left.chars().all(|c| "CN".contains(c));

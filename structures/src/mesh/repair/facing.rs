@@ -1,7 +1,7 @@
-//! Orientation of surfaces: what faces inward is turned, but for the walls of cavities.
+//! Orientation of surfaces: those that face inward are turned, but for the walls of cavities.
 //!
 //! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another. A piece of a
-//! surface, such as a face whose seams a file did not close, has no inside of its own. From the outside in, a surface
+//! surface, such as a face whose seams a file did not close, has no inside. From the outside in, a surface
 //! that lies
 //!
 //! - in no other faces outward; if it is turned, so is all that lies within it;
@@ -341,7 +341,7 @@ fn containers(mesh: &Mesh, surfaces: &[Surface]) -> Result<Vec<Vec<usize>>, Erro
     Ok(containers)
 }
 
-/// Whether a surface lies within another; none where it lies on it all over.
+/// Whether a surface is within another; `None` if it is on it all over.
 fn is_within(mesh: &Mesh, inner: &Surface, outer: &TriangleTree) -> Option<bool> {
     let middle = |&triangle: &u32| centroid(mesh.corners(mesh.triangles[triangle as usize]));
     let count = inner.triangles.len();

@@ -3,7 +3,7 @@
 //! A fan from the first corner, which most readers use, lays triangles outside a face that is not convex: the distance
 //! to them is not the distance to the solid.
 //!
-//! The corners of a large polygon are a ring whose tips stand in a queue. When one is clipped its neighbours go to the
+//! The corners of a large polygon are a ring whose tips are in a queue. When one is clipped its neighbours go to the
 //! end, so that a round along the ring clips every second corner and triangles stay small. A tip that is no ear waits
 //! for the corner that is in its way, and queues again when that corner or a neighbour has gone. A tree of corners
 //! finds the corners in a triangle.
@@ -18,7 +18,7 @@ const FEW: usize = 64;
 
 /// Appends the triangles of a polygon with three or more corners, in its own orientation.
 ///
-/// A corner may stand there several times, as where a bridge leads from the rim to a hole and back. Vertices are
+/// A corner may occur several times, as if a bridge leads from the rim to a hole and back. Vertices are
 /// distinguished by their numbers, so those in one place must be one.
 ///
 /// A polygon that crosses itself, is far from plane or has no area gives a fan for what cannot be clipped. O(n log n)
@@ -30,7 +30,7 @@ pub fn triangulate(positions: &[[f64; 3]], corners: &[u32], triangles: &mut Vec<
     }
     let at = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default();
     let mut left = corners.to_vec();
-    // A corner that stands there twice in a row is one; as two it would be a tip without a turn.
+    // A corner twice in succession is one; as two it would be a tip without a turn.
     left.dedup();
     while left.len() > 1 && left.first() == left.last() {
         left.pop();
@@ -103,7 +103,7 @@ struct Ear {
 }
 
 impl Ear {
-    /// The triangle of three corners in a row; `normal` is the polygon's, of any length.
+    /// The triangle of three successive corners; `normal` is the polygon's, of any length.
     fn new(corners: [[f64; 3]; 3], normal: [f64; 3]) -> Self {
         Self { corners, normal }
     }
@@ -119,7 +119,7 @@ impl Ear {
         self.turn(a, b, c) > 0.0
     }
 
-    /// Whether a point lies in the triangle or on its rim.
+    /// Whether a point is in the triangle or on its rim.
     fn holds(&self, point: [f64; 3]) -> bool {
         let [a, b, c] = self.corners;
         let is_outside = |p, q| self.turn(p, q, point) < 0.0;
@@ -178,7 +178,7 @@ struct Ring {
 }
 
 impl Ring {
-    /// A ring of vertices, no two in a row alike; `normal` is the polygon's, of any length.
+    /// A ring of vertices, no two in succession alike; `normal` is the polygon's, of any length.
     fn new(vertices: &[u32], at: impl Fn(u32) -> [f64; 3], normal: [f64; 3]) -> Self {
         let count = vertices.len();
         let corner = |(place, &vertex): (usize, &u32)| Corner {

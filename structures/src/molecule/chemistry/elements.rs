@@ -21,7 +21,7 @@ pub(crate) struct Element {
     pub(crate) charge: Option<f64>,
 }
 
-/// Kind of an element by what its ions bind.
+/// Kind of an element by the ligands of its ions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ElementKind {
     NonMetal,
@@ -68,7 +68,7 @@ pub(crate) fn is_hard(symbol: &str) -> bool {
     element(symbol).is_some_and(|element| element.kind == ElementKind::Hard)
 }
 
-/// Where an atom's name stands in its PDB columns 13 to 16.
+/// Alignment of an atom's name in PDB columns 13 to 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NameColumn {
     /// Column 13 is blank: a one-letter element, where the file keeps to the wwPDB's alignment.
@@ -104,7 +104,7 @@ const UNMISTAKABLE: [&str; 12] = [
     "BR", "CL", "FE", "ZN", "MG", "MN", "SE", "LI", "RU", "RB", "AL", "SI",
 ];
 
-/// The element of an atom, or nothing when neither column nor names tell.
+/// The element of an atom; `None` if neither column nor names show it.
 ///
 /// `aligned` says whether the file keeps to the wwPDB's alignment of atom names, by which a blank column 13 means a
 /// one-letter element (` CA ` carbon, `CA  ` calcium).

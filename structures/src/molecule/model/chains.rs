@@ -46,7 +46,7 @@ pub(crate) struct Gap {
 /// Junction of two peptide residues in a row.
 enum Between {
     Bond,
-    /// So many residues, between a C and an N.
+    /// This many residues, between a C and an N.
     Gap(i64, [[f64; 3]; 2]),
     /// The end of one chain and the beginning of another.
     Ends,
@@ -104,7 +104,7 @@ impl Molecule {
             && spacing <= STRETCHED * (counted + 1) as f64
     }
 
-    /// Where an end of a chain is, unless something is bonded to it.
+    /// Position of a chain's end, unless something is bonded to it.
     fn free_end(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> Option<[f64; 3]> {
         let end = self.atom(residue, name)?;
         (!self.capped(caps, residue, name)).then_some(end.position)
@@ -154,7 +154,7 @@ impl Chain<'_> {
     }
 }
 
-/// Longest distance in Å of a terminal atom from what is bonded to it.
+/// Longest distance in Å of a terminal atom from an atom bonded to it.
 pub(crate) const MAX_CAP_LENGTH: f64 = 1.7;
 
 /// An end that a selection of residues made of a bond: a residue that is kept, and its atom whose partner is not.
@@ -202,15 +202,14 @@ pub(crate) fn cut_ends(kept: &[Atom], left_out: &[Atom]) -> Vec<CutEnd> {
 
 /// Largest number of residues from a terminus that count as near it.
 ///
-/// The second constant is the largest share of a chain, one residue in so many: of small proteins hardly any is
+/// The second constant is the largest share of a chain, one residue in this many: of small proteins hardly any is
 /// flexible.
 const NEAR: usize = 8;
 const ONE_IN: usize = 16;
 
 /// Residues near the termini of a molecule's chains, and near gaps: they move more than the rest of a body.
 ///
-/// What a crystal resolves of them is one place of many, and wrong poses lie against that place more often than right
-/// ones.
+/// A crystal resolves one of many places, and wrong poses touch that place more often than right ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Termini {
     /// How many residues.

@@ -1,4 +1,4 @@
-//! Data of a molecule: atoms, residues, chains, and what follows from their places.
+//! Data of a molecule: atoms, residues, chains, and quantities that follow from their places.
 
 mod chains;
 mod copies;

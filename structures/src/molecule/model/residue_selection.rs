@@ -141,7 +141,7 @@ impl Picked {
 }
 
 impl ResidueSelection {
-    /// Its parts in the order written, each as a selection of its own. A part keeps the chain that it goes on with.
+    /// Its parts in the order written, each as a selection. A part keeps the chain that it goes on with.
     pub fn parts(&self) -> impl Iterator<Item = ResidueSelection> + '_ {
         self.0.iter().map(|part| Self(vec![part.clone()]))
     }

@@ -1,4 +1,4 @@
-//! Side chains that turn: the bonds, the angles, and what keeps a side chain as it is.
+//! Side chains that turn: their bonds and angles, and reasons for a side chain to stay as it is.
 
 use std::collections::HashMap;
 
@@ -11,8 +11,8 @@ use crate::molecule::model::{Atom, Molecule, Residue, residues};
 use crate::neighbours::{CellList, Member};
 use crate::vector::{cross, dot, norm, squared_distance, subtract};
 
-/// phi and psi in radians where an end of a chain leaves one undefined: those of an extended chain, -75 and 145
-/// degrees.
+/// phi and psi in radians for the end of a chain, which leaves one undefined: -75 and 145 degrees, as of an extended
+/// chain.
 const EXTENDED: [f64; 2] = [-1.309, 2.531];
 
 /// The side chain of an amino acid with chi angles.
@@ -313,7 +313,7 @@ impl<'a> SideChainBonds<'a> {
     }
 }
 
-/// What bonds an atom of a side chain to an atom of another residue.
+/// Bond of a side chain's atom to an atom of another residue.
 fn bond(atom: &Atom, other: &Atom) -> Option<HeldSideChain> {
     let square = squared_distance(atom.position, other.position);
     let within = |reach: f64| square <= reach * reach;
@@ -332,7 +332,7 @@ fn bond(atom: &Atom, other: &Atom) -> Option<HeldSideChain> {
 }
 
 /// Dihedral angle in radians, -pi to pi, of four places: clockwise is positive when looking from the second to the
-/// third (IUPAC-IUB, J. Mol. Biol. 52 (1970) 1-17). Zero where three of them lie in a line.
+/// third (IUPAC-IUB, J. Mol. Biol. 52 (1970) 1-17). Zero if three of them are in line.
 fn dihedral([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
     let (first, axis, last) = (subtract(b, a), subtract(c, b), subtract(d, c));
     let (left, right) = (cross(first, axis), cross(axis, last));

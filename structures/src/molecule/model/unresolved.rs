@@ -1,8 +1,8 @@
 //! Residues that a chain has and its file does not resolve, and conformers of these segments.
 //!
 //! An unresolved loop bridges a gap in the chain, and termini move or go on beyond what is resolved. A docked partner
-//! meets them. Their places are not known, so many conformers are sampled for each segment, clear of the body and of
-//! themselves. Where all conformers pass the space is filled; where few pass it is mostly free.
+//! meets them. Their places are not known. Many conformers are sampled for each segment, clear of the body and of
+//! themselves: a place that all of them pass is filled, one that few pass is mostly free.
 
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;

@@ -47,9 +47,9 @@ impl<'a> Lettered<'a> {
 
 /// The locations of atoms that have no letter beside lettered atoms of their residue, by index.
 ///
-/// Where a lettered atom of the same name is elsewhere, they are the locations of the letters that lack that name:
-/// their letter was left out. Else it is the blank location. The whole residue belongs to that if letters have another
-/// residue on its backbone.
+/// If a lettered atom of the same name is elsewhere, they are the locations of the letters that lack that name: their
+/// letter was left out. Else it is the blank location. The whole residue belongs to that if letters have another residue
+/// on its backbone.
 fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
     let mut lettered: HashMap<Place<'_>, Lettered<'_>> = HashMap::new();
     for atom in atoms {

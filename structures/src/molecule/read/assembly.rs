@@ -1,4 +1,4 @@
-//! Biological assemblies: the molecule as it works, built from the copies that a file says of its chains.
+//! Biological assemblies: the working molecule, built of copies of the file's chains.
 //!
 //! The file of a crystal structure holds the asymmetric unit, which may be half of a dimer or four copies of a monomer.
 //! The file says which chains, moved how, make the biological assembly. The first copy of a chain keeps its name and the
@@ -76,7 +76,7 @@ struct Assembly {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Assemblies {
     list: Vec<Assembly>,
-    /// 1-based line and what is wrong there, where some cannot be understood.
+    /// 1-based line and fault of the first that cannot be understood.
     broken: Option<(Option<usize>, String)>,
 }
 

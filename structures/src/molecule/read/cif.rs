@@ -28,7 +28,7 @@ pub(crate) enum Kind<'a> {
 }
 
 impl<'a> Kind<'a> {
-    /// The text of a value; nothing for `.` and `?` and for what is no value.
+    /// The text of a value; `None` for `.`, `?` and other tokens.
     pub(crate) fn value(self) -> Option<&'a str> {
         match self {
             Self::Bare("." | "?") => None,

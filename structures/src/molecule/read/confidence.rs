@@ -1,4 +1,4 @@
-//! Predicted models: the confidence (pLDDT) that their B column carries, and residues of which it knows no place.
+//! Predicted models: the confidence (pLDDT) in their B column, and residues without a known place.
 //!
 //! AlphaFold, ColabFold, ESMFold, Boltz and their like write in the place of temperature factors how sure they are of
 //! each residue's surroundings. This is pLDDT, a predicted lDDT-Cα, from 0 to 100 (Jumper et al., Nature 596, 583-589,
@@ -7,7 +7,7 @@
 //! Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596, 590-596, 2021): its place is no
 //! fact, and as a solid it blocks what it may not touch.
 //!
-//! What the column holds is detected from what the file says of itself ([`Provenance`]). If it says nothing, the values
+//! The meaning of the column is detected from the file's statements ([`Provenance`]). If there are none, the values
 //! decide, or the user does by giving a least pLDDT. One value per residue is hardly ever a refined structure's. If
 //! values differ from atom to atom (AlphaFold 3, Chai-1), four things part pLDDT from temperature factors:
 //!
@@ -163,7 +163,7 @@ pub(crate) fn weigh(
 /// Fewest residues of several atoms for values alone to show a prediction.
 const ENOUGH_RESIDUES: usize = 5;
 
-/// Mean pLDDT above which one value a residue shows a prediction: models that anyone docks are above it, most refined B
+/// Mean pLDDT above which one value per residue shows a prediction: models that anyone docks are above it, most refined B
 /// values below.
 const TELLING_MEAN: f64 = 60.0;
 
@@ -171,10 +171,10 @@ const TELLING_MEAN: f64 = 60.0;
 /// tail of low values, and that one's side chains are far above its backbone.
 const TELLING_MEAN_BY_ATOM: f64 = 70.0;
 
-/// By how many standard deviations the median lies at least above the mean.
+/// Least distance of the median above the mean, in standard deviations.
 const LOW_TAIL: f64 = 0.1;
 
-/// By how many standard deviations side chains lie at most above their backbones; of refined structures mostly 0.1 to
+/// Largest distance of side chains above their backbones, in standard deviations; of refined structures mostly 0.1 to
 /// 0.5.
 const MAX_TIPS: f64 = 0.1;
 

@@ -1,5 +1,4 @@
-//! Reading of mmCIF files: the `_atom_site` table of the first data block that has one, and what the file says beside
-//! it.
+//! Reading of mmCIF files: the `_atom_site` table of the first data block that has one, methods and assemblies.
 //!
 //! Names are the author's (`auth_asym_id`, `auth_seq_id`) where given, the archive's (`label_...`) otherwise, as in the
 //! PDB format; atom and residue names are `label_atom_id` and `label_comp_id`.

@@ -40,7 +40,7 @@ pub struct AtomFate {
     pub dropped: Option<DropKind>,
 }
 
-/// Atoms that are dropped: counted in the report, and listed where their fates are requested.
+/// Atoms that are dropped: counted in the report, and collected if their fates are requested.
 #[derive(Debug, Default)]
 pub(crate) struct Drops {
     pub(crate) report: ReadReport,
@@ -72,7 +72,7 @@ impl Drops {
 /// Of alternate locations it keeps one per residue: that of the highest summed occupancy, and the alphabetically first
 /// of equals.
 ///
-/// The molecule's report says what was kept, dropped and altered.
+/// The molecule's report counts the atoms kept, dropped and altered.
 ///
 /// # Errors
 /// With the file, the line where there is one, and a remedy.
@@ -117,7 +117,7 @@ pub fn read_bytes(
 /// Number of models in a file's bytes, at least 1.
 ///
 /// # Errors
-/// The bytes are of no known format, or their records cannot be told apart.
+/// The bytes are of no known format, or their records cannot be read.
 pub fn model_count(file: &Path, bytes: Vec<u8>) -> Result<usize, Error> {
     let count = || {
         let source = source::unpack(file, bytes)?;
@@ -224,7 +224,7 @@ fn unknown_model(model: usize, models: usize) -> Error {
     )
 }
 
-/// Reads the models that are wanted; the only one of a file whatever number was requested.
+/// Reads the requested models; a file's only model whatever number was requested.
 fn read_text(format: Format, text: &str, model: ModelChoice) -> Result<FileContents, Error> {
     let read = |model| match format {
         Format::Pdb => pdb::read(text, model),

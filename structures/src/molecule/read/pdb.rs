@@ -77,7 +77,8 @@ pub(crate) fn read(text: &str, model: ModelChoice) -> Result<FileContents, Error
 }
 
 fn misplaced(line: usize) -> Error {
-    let message = "the line holds an atom record that is not in the columns of the PDB format";
+    let message =
+        "the line holds an atom record that does not stand in the columns of the PDB format";
     Error::input(message).on_line(line as u64).help(
         "begin it with ATOM or HETATM in column 1, in capitals, with blanks and no tabs, and put x, y and z into \
          columns 31-38, 39-46 and 47-54",
@@ -217,7 +218,7 @@ fn checked_position(line: usize, record: &str) -> Result<[f64; 3], Error> {
             "the atom record ends after {length} characters, before its coordinates are complete"
         );
         return Err(Error::input(message).on_line(line as u64).help(
-            "fetch the file again: it may be cut short; coordinates are in columns 31 to 54",
+            "fetch the file again: it may be cut short; coordinates stand in columns 31 to 54",
         ));
     }
     // The serial number in columns 7-11, perhaps from 5 on, is not used, and may hold anything.

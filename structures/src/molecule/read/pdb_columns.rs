@@ -40,7 +40,7 @@ impl AtomLine<'_> {
 /// shifted by blanks or tabs is moved so that its points are here.
 const POINTS: [usize; 3] = [34, 42, 50];
 
-/// Where the coordinates end.
+/// End of the coordinates.
 const END: usize = 54;
 
 /// Columns between the stops of a tab.
@@ -212,8 +212,7 @@ pub(crate) fn has_wide_chains(text: &str) -> bool {
     })
 }
 
-/// Kinds of residues that show a file's chains to have two letters: a force field may have a name of its own for one or
-/// two.
+/// Kinds of residues that show a file's chains to have two letters: a force field may have other names for one or two.
 const WITNESSES: usize = 4;
 
 /// Four-letter names of amino acids in the GROMOS force fields, which begin with those of three.
@@ -222,7 +221,7 @@ const GROMOS_VARIANTS: [&str; 14] = [
     "HISH", "LYSH",
 ];
 
-/// Whether columns 18-20 spell a residue that a letter more would not.
+/// Whether columns 18-20 spell a residue, and with the next letter they do not.
 fn is_known_with_three(three: &str, four: &str) -> bool {
     is_known(three) && !is_known(four) && !GROMOS_VARIANTS.contains(&four)
 }

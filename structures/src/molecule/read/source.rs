@@ -190,7 +190,7 @@ fn refuse_archive(bytes: &[u8]) -> Result<(), Error> {
     found.map_or(Ok(()), |(_, what, remedy)| Err(foreign(what, remedy)))
 }
 
-/// Where a tar has its magic bytes (POSIX.1-1988, ustar).
+/// Offset of a tar's magic bytes (POSIX.1-1988, ustar).
 const USTAR: usize = 257;
 
 const UNPACK: &str =

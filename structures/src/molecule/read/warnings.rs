@@ -1,5 +1,5 @@
-//! Warnings about the atoms that are kept: what is missing and would make the shape a lie, what is there twice, and what
-//! is beyond the proteins, atom by atom, that the score was tuned on.
+//! Warnings about the atoms that are kept: parts that are missing or there twice, and molecules other than the all-atom
+//! proteins that the score was tuned on.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
@@ -105,7 +105,7 @@ fn duplicates(atoms: &[Atom]) -> Option<String> {
     })
 }
 
-/// Atoms none of which has a place of its own, as in files that were written before there were coordinates.
+/// Atoms that are all in one place, as in files that were written before there were coordinates.
 fn in_one_place(atoms: &[Atom]) -> Option<String> {
     // Fewest atoms among which coincident positions are looked for.
     const PLACED: usize = 10;
