@@ -22,12 +22,10 @@ pub(crate) fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
     add(a, scale(b, s))
 }
 
-/// The inner product.
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector product.
 pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [
         a[1] * b[2] - a[2] * b[1],
@@ -36,17 +34,14 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The length.
 pub(crate) fn norm(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The distance between two points.
 pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     norm(subtract(a, b))
 }
 
-/// The square of the distance between two points.
 pub(crate) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     let away = subtract(a, b);
     dot(away, away)

@@ -15,7 +15,6 @@ use crate::error::Error;
 /// Key under which foam lists the spheres of one decomposition.
 const FOAM_LIST: &str = "spheres";
 
-/// The spheres under one name.
 struct Group {
     name: String,
     balls: Vec<Ball>,
@@ -150,7 +149,6 @@ enum Value {
 }
 
 impl Node {
-    /// The value under a key of a mapping.
     fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
             Value::Mapping(entries) => {
@@ -162,7 +160,6 @@ impl Node {
     }
 }
 
-/// The documents of a text.
 fn documents(text: &str) -> Result<Vec<Node>, Error> {
     let mut open: Vec<(Node, Option<Node>)> = Vec::new();
     let mut documents = Vec::new();

@@ -7,12 +7,10 @@ use crate::ball::Ball;
 use crate::neighbours::box_tree::box_tree;
 use crate::vector::{add, along, bounds, distance, scale, subtract};
 
-/// Balls in a leaf at most.
 const LEAF: usize = 4;
 /// Steps by which the centre of a bounding ball is moved towards what reaches out farthest.
 const STEPS: i32 = 24;
 
-/// Some of the balls.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     /// A ball that holds all of them.
@@ -113,7 +111,6 @@ impl BallHierarchy {
         &self.nodes
     }
 
-    /// The balls of a node.
     #[inline(always)]
     pub(super) fn members(&self, node: &Node) -> &[Ball] {
         &self.balls[node.first as usize..(node.first + node.count) as usize]

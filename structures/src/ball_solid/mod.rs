@@ -34,6 +34,8 @@ pub use from_mesh::MeshSampling;
 pub use hierarchy::BallHierarchy;
 pub use meeting::MeetingPairs;
 
+pub use crate::motion::Motion;
+
 use crate::ball::Ball;
 use crate::knots::{Knots, KnotsError};
 use crate::vector::{add, norm, scale, subtract};
@@ -157,41 +159,4 @@ fn weighted<'a>(
     let parts = balls.into_iter().map(|ball| (ball.center, ball.radius));
     let (centers, radii) = parts.unzip();
     Knots::with_weights(centers, radii, weights)
-}
-
-/// A rigid motion between the stored coordinates of two solids: x -> rows x + shift, the rows of a proper rotation.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Motion {
-    /// Rows of the rotation matrix.
-    pub rows: [[f64; 3]; 3],
-    /// Translation, in the solids' unit.
-    pub shift: [f64; 3],
-}
-
-impl Motion {
-    /// The motion that moves nothing.
-    pub const IDENTITY: Self = Self {
-        rows: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        shift: [0.0; 3],
-    };
-
-    /// The image of a point.
-    #[inline(always)]
-    pub fn apply(&self, [x, y, z]: [f64; 3]) -> [f64; 3] {
-        let [a, b, c] = &self.rows;
-        [
-            a[0] * x + a[1] * y + a[2] * z + self.shift[0],
-            b[0] * x + b[1] * y + b[2] * z + self.shift[1],
-            c[0] * x + c[1] * y + c[2] * z + self.shift[2],
-        ]
-    }
-
-    /// This motion followed by a translation.
-    #[must_use]
-    pub fn shifted(&self, by: [f64; 3]) -> Self {
-        Self {
-            rows: self.rows,
-            shift: add(self.shift, by),
-        }
-    }
 }

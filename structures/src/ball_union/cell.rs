@@ -153,7 +153,6 @@ impl Cell {
         true
     }
 
-    /// Whether a vertex is in the half-space.
     fn keeps(&self, vertex: u32) -> bool {
         self.beyond[vertex as usize] <= 0.0
     }

@@ -322,12 +322,10 @@ impl Arrangement {
         }
     }
 
-    /// Whether two balls are of one union.
     fn together(&self, one: usize, other: usize) -> bool {
         (one < self.split) == (other < self.split)
     }
 
-    /// Visits the balls that meet one.
     fn visit_meeting(&self, number: usize, mut visit: impl FnMut(&Ball, usize)) {
         let ball = &self.balls[number];
         let mut at = 0;
@@ -390,12 +388,10 @@ impl Arrangement {
     }
 }
 
-/// Whether a vector is shorter than a length.
 fn within(vector: [f64; 3], reach: f64) -> bool {
     dot(vector, vector) < reach * reach
 }
 
-/// The part of a ball in its cell.
 fn part(ball: &Ball, cell: &mut Cell, cuts: &[&Cuts]) -> Volume {
     let cube = ball.radius.powi(3);
     let blur = |cuts: &&Cuts| 4.0 * cuts.planes.len() as f64 * (1.0 + cuts.largest);
@@ -568,7 +564,7 @@ mod tests {
             let pairs = first.iter().flat_map(|a| {
                 let lenses = second
                     .iter()
-                    .map(|b| lens_volume(a.radius, b.radius, length(between(a, b))));
+                    .map(|b| lens_volume(a.radius, b.radius, distance(a.center, b.center)));
                 lenses.collect::<Vec<_>>()
             });
             let exact: f64 = pairs.sum();

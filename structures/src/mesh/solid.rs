@@ -185,7 +185,6 @@ impl Solid {
     }
 }
 
-/// Triangles in a leaf at most.
 const LEAF: usize = 4;
 
 impl Solid {

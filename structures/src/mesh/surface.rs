@@ -76,7 +76,6 @@ impl Solid {
 const BLOCKS: usize = 64;
 const LARGEST_BLOCK: usize = 512;
 
-/// A block of the surface.
 pub(crate) struct SurfaceBlock<'a> {
     solid: &'a Solid,
     block: usize,

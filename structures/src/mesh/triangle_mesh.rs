@@ -32,7 +32,6 @@ impl Mesh {
         self.closed
     }
 
-    /// The corner points of a triangle.
     pub(crate) fn corners(&self, triangle: [u32; 3]) -> [[f64; 3]; 3] {
         triangle.map(|corner| self.positions[corner as usize])
     }
@@ -94,7 +93,6 @@ impl Mesh {
         self.triangles.iter().map(|&t| self.area_of(t)).sum()
     }
 
-    /// Area of one triangle, in the file's unit squared.
     pub(crate) fn area_of(&self, triangle: [u32; 3]) -> f64 {
         norm(doubled_normal(self.corners(triangle))) / 2.0
     }
@@ -124,12 +122,10 @@ impl Mesh {
     }
 }
 
-/// The longest side of a triangle.
 pub(crate) fn longest_side(&[a, b, c]: &[[f64; 3]; 3]) -> f64 {
     distance(a, b).max(distance(b, c)).max(distance(c, a))
 }
 
-/// The middle of a triangle.
 pub(crate) fn centroid([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
     scale(add(a, add(b, c)), 1.0 / 3.0)
 }

@@ -3,7 +3,6 @@
 use crate::mesh::triangle_mesh::{Mesh, centroid, doubled_normal};
 use crate::vector::{add, bounds, distance, norm, scale};
 
-/// Triangles in a leaf.
 const LEAF: usize = 8;
 
 /// A binary tree over triangles that have an area; halves at the median of the longest side.
@@ -11,11 +10,9 @@ const LEAF: usize = 8;
 pub(crate) struct TriangleTree {
     /// Corners, in the order of the leaves.
     triangles: Vec<[[f64; 3]; 3]>,
-    /// Nodes in depth-first order.
     nodes: Vec<Cluster>,
 }
 
-/// A cluster of triangles.
 #[derive(Debug)]
 pub(crate) struct Cluster {
     /// Area-weighted middle.
@@ -89,7 +86,6 @@ impl TriangleTree {
     }
 }
 
-/// A triangle after its middle.
 type Placed = ([f64; 3], [[f64; 3]; 3]);
 
 /// Puts the tree over `triangles`, which are numbers `first` and on, at the end of `nodes`.
@@ -136,7 +132,6 @@ fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Cluster>) {
     nodes[place].below = (nodes.len() - place - 1) as u32;
 }
 
-/// Largest distance of points from a centre.
 pub(crate) fn reach<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>, center: [f64; 3]) -> f64 {
     let distances = points.into_iter().map(|&point| distance(point, center));
     distances.fold(0.0, f64::max)

@@ -56,7 +56,6 @@ impl<T> SpatialHash<T> {
         cell_of(from_origin, self.edge)
     }
 
-    /// The items of the cell of a point.
     fn members_at(&mut self, point: [f64; 3]) -> &mut Vec<T> {
         self.members.entry(self.cell(point, 0.0)).or_default()
     }

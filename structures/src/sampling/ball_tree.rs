@@ -11,7 +11,6 @@ pub struct BallTree {
     nodes: Vec<Node>,
 }
 
-/// Some balls, with the box around them.
 type Node = BoxNode<([f64; 3], [f64; 3]), 4>;
 
 /// No ball of a node is nearer than this to `point`, in the sense of [`BallTree::distance`].
@@ -147,7 +146,8 @@ mod tests {
         for ball in &balls {
             let larger = balls.iter().any(|other| {
                 let first = other.radius > ball.radius
-                    || other.radius == ball.radius && compare(other.center, ball.center).is_lt();
+                    || other.radius == ball.radius
+                        && crate::vector::compare(other.center, ball.center).is_lt();
                 first && other.holds(ball)
             });
             assert_eq!(tree.holds_before(ball), larger);

@@ -111,7 +111,6 @@ pub fn cover_nodes(field: &DepthField, mu: f64) -> Vec<Ball> {
     take_nodes(field, &nodes, &radii, mu)
 }
 
-/// Step 1 on the grid.
 fn take_nodes(field: &DepthField, nodes: &[usize], priorities: &[f64], mu: f64) -> Vec<Ball> {
     let mut queue: Vec<usize> = (0..nodes.len()).collect();
     // Ties: the larger ball, then the lower index, so that the order does not depend on the sort.

@@ -249,7 +249,6 @@ impl<'a> HausdorffMeter<'a> {
         (missed, outside, inner, outer)
     }
 
-    /// Farthest distance of a surface sample from the balls.
     fn surface_distance(&self, tree: &BallTree) -> f64 {
         let epsilon = self.field.grid.epsilon();
         let spacing = epsilon * SAMPLE_SPACING;

@@ -17,7 +17,6 @@ use crate::ball::Ball;
 use crate::numeric::Bump;
 use crate::sampling::grid::DepthField;
 
-/// Rounds over all weights at most.
 const ROUNDS: usize = 300;
 
 /// Ends when no weight of a round moves by more than this.

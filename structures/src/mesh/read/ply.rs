@@ -2,7 +2,7 @@
 //! `vertex_index`, a list of any number type). Other elements and properties are passed over.
 
 use crate::error::Error;
-use crate::mesh::read::soup::{At, Soup, broken, no_such_vertex};
+use crate::mesh::read::soup::{At, Soup, broken, vertex};
 use crate::mesh::read::words::{Line, Records, by_line_or_stream, lines, real, shortened};
 
 /// Role of an element of the file in the mesh.
@@ -25,7 +25,6 @@ enum Kind {
 /// Type of a number: its kind, and its size in bytes.
 type Scalar = (Kind, usize);
 
-/// The type that a word of the header names.
 fn scalar(name: &str) -> Option<Scalar> {
     Some(match name {
         "char" | "int8" => (Kind::Signed, 1),
@@ -83,7 +82,6 @@ impl Element {
         }
     }
 
-    /// The property of this type and name.
     fn property(&self, kind: Scalar, length: Option<Scalar>, name: &str) -> Property {
         let role = match (self.role, name, length) {
             (Role::Vertex, "x", None) => Use::Coordinate(0),
@@ -134,7 +132,6 @@ pub fn parse(bytes: &[u8]) -> Result<Soup, Error> {
     })
 }
 
-/// The header of a file.
 struct Header<'a> {
     encoding: Encoding,
     elements: Vec<Element>,
@@ -144,7 +141,6 @@ struct Header<'a> {
     lines: usize,
 }
 
-/// Reads the header.
 fn header(bytes: &[u8]) -> Result<Header<'_>, Error> {
     let lead = bytes.len() - bytes.trim_ascii_start().len();
     let (blank, start) = bytes.split_at(lead);
@@ -225,7 +221,6 @@ fn header(bytes: &[u8]) -> Result<Header<'_>, Error> {
     Err(broken(None, fault))
 }
 
-/// Reads binary data.
 fn binary(elements: &[Element], payload: &[u8], is_big: bool) -> Result<Soup, Error> {
     let read = |rest| {
         let mut data: Data<'_, '_, std::iter::Empty<_>> = Data::Binary { rest, is_big };
@@ -285,7 +280,7 @@ impl<'a, L: Iterator<Item = Line<'a>>> Data<'_, 'a, L> {
         };
         let Some(word) = words.next() else {
             let fault = format!("the line ends where {} is needed", what());
-            return Err(words.line().fault(fault));
+            return Err(words.line.fault(fault));
         };
         let (found, needed) = match role {
             Use::None => return Ok(0.0),
@@ -301,11 +296,10 @@ impl<'a, L: Iterator<Item = Line<'a>>> Data<'_, 'a, L> {
             }
             Use::Index => (word.parse().ok(), "the index of a vertex"),
         };
-        found.ok_or_else(|| words.line().misplaced(word, needed))
+        found.ok_or_else(|| words.line.misplaced(word, needed))
     }
 }
 
-/// Reads all elements.
 fn read<'a, L: Iterator<Item = Line<'a>>>(
     elements: &[Element],
     data: &mut Data<'_, 'a, L>,
@@ -323,7 +317,7 @@ fn read<'a, L: Iterator<Item = Line<'a>>>(
             let at = match data {
                 Data::Text(words) => {
                     words.begin(|| format!("{name} {index} of {count}"))?;
-                    At::Line(words.line().number)
+                    At::Line(words.line.number)
                 }
                 Data::Binary { .. } => At::Face(index),
             };
@@ -384,9 +378,7 @@ impl FaceLists {
             for run in indices.split(|&index| role == Role::Strip && index < 0) {
                 corners.clear();
                 for &index in run {
-                    let place = u32::try_from(index).ok();
-                    let place = place.filter(|&place| (place as usize) < vertices);
-                    corners.push(place.ok_or_else(|| no_such_vertex(at.line(), index, vertices))?);
+                    corners.push(vertex(at.line(), index, index, vertices)?);
                 }
                 if role != Role::Strip {
                     soup.push_face(&corners, at);

@@ -11,13 +11,19 @@ pub fn broken(line: impl Into<Option<usize>>, what: impl fmt::Display) -> Error 
     at_line(line, what).help("export the mesh again: the file may be cut short or written by hand")
 }
 
-/// A face that names a vertex that the file does not have: `index` as it is written, with `vertices` to choose from.
-pub fn no_such_vertex(line: impl Into<Option<usize>>, index: i64, vertices: usize) -> Error {
-    at_line(
-        line,
-        format!("a face names vertex {index}, but there are {vertices}"),
-    )
-    .help("export the mesh again: faces and vertices do not fit together")
+/// The vertex at `place`, from 0, of the file's `vertices`; `index` is its number as it is written.
+pub fn vertex(
+    line: impl Into<Option<usize>>,
+    index: i64,
+    place: i64,
+    vertices: usize,
+) -> Result<u32, Error> {
+    let place = u32::try_from(place).ok();
+    let place = place.filter(|&place| (place as usize) < vertices);
+    place.ok_or_else(|| {
+        let fault = format!("a face names vertex {index}, but there are {vertices}");
+        at_line(line, fault).help("export the mesh again: faces and vertices do not fit together")
+    })
 }
 
 fn at_line(line: impl Into<Option<usize>>, what: impl fmt::Display) -> Error {

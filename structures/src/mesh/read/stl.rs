@@ -28,7 +28,6 @@ const RECORD: usize = 50;
 /// How far records that the header does not count may lie from those that it counts, in sizes of these.
 const FARTHEST: f64 = 1e3;
 
-/// Number of triangles that the header gives.
 fn counted(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(80..HEADER)?.try_into().ok()?;
     usize::try_from(u32::from_le_bytes(count)).ok()
@@ -39,7 +38,6 @@ pub fn has_records(bytes: &[u8]) -> bool {
     counted(bytes).is_some_and(|count| count > 0 && bytes.len() == HEADER + RECORD * count)
 }
 
-/// Reads a binary file.
 fn parse_binary(bytes: &[u8]) -> Result<Soup, Error> {
     let Some(count) = counted(bytes) else {
         let what = "this is neither a text STL (it does not begin with 'solid') nor a binary one (it is shorter than the \
@@ -204,7 +202,6 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Reads a text.
 fn parse_text(text: &str) -> Result<Soup, Error> {
     let mut before = plain_lines(text).take(MAX_LINES_BEFORE);
     let Some(before) = before.position(|line| is_first(&line)) else {

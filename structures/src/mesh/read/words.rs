@@ -98,7 +98,8 @@ pub fn lines(text: &str, comments: bool) -> impl Iterator<Item = Line<'_>> + Clo
 /// Most files have one line per record, often with more words than are needed. Some wrap lines, or have but one.
 pub struct Records<'a, L> {
     lines: L,
-    line: Line<'a>,
+    /// The line of the last word.
+    pub line: Line<'a>,
     words: std::str::SplitAsciiWhitespace<'a>,
     /// Whether lines mean nothing.
     is_stream: bool,
@@ -115,11 +116,6 @@ impl<'a, L: Iterator<Item = Line<'a>>> Records<'a, L> {
             words: "".split_ascii_whitespace(),
             is_stream,
         }
-    }
-
-    /// The line of the last word.
-    pub fn line(&self) -> Line<'a> {
-        self.line
     }
 
     /// Goes to the next record, named `what` in messages.
@@ -145,7 +141,6 @@ impl<'a, L: Iterator<Item = Line<'a>>> Records<'a, L> {
 impl<'a, L: Iterator<Item = Line<'a>>> Iterator for Records<'a, L> {
     type Item = &'a str;
 
-    /// The next word of the record.
     fn next(&mut self) -> Option<&'a str> {
         let mut word = self.words.next();
         if word.is_none() && self.is_stream {

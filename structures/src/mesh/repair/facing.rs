@@ -46,7 +46,6 @@ pub(in crate::mesh) struct Part {
     pub reverse: Option<usize>,
 }
 
-/// A surface, measured.
 struct Surface {
     parts: usize,
     triangles: Vec<u32>,

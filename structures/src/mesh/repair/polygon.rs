@@ -58,7 +58,10 @@ fn clip_few(
                 left[tip],
                 left[(tip + 1) % count],
             ];
-            let ear = Ear::new(corners.map(&at), normal);
+            let ear = Ear {
+                corners: corners.map(&at),
+                normal,
+            };
             ear.is_tip()
                 && left
                     .iter()
@@ -99,21 +102,16 @@ fn newell(mut points: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
 /// A tip of a polygon with its two neighbours: the triangle that it would leave.
 struct Ear {
     corners: [[f64; 3]; 3],
+    /// The polygon's, of any length.
     normal: [f64; 3],
 }
 
 impl Ear {
-    /// The triangle of three successive corners; `normal` is the polygon's, of any length.
-    fn new(corners: [[f64; 3]; 3], normal: [f64; 3]) -> Self {
-        Self { corners, normal }
-    }
-
     /// Twice the area of a triangle in units of the normal: above zero where it turns as the polygon does.
     fn turn(&self, p: [f64; 3], q: [f64; 3], r: [f64; 3]) -> f64 {
         dot(cross(subtract(q, p), subtract(r, p)), self.normal)
     }
 
-    /// Whether the tip stands out.
     fn is_tip(&self) -> bool {
         let [a, b, c] = self.corners;
         self.turn(a, b, c) > 0.0
@@ -200,7 +198,6 @@ impl Ring {
         }
     }
 
-    /// Appends the triangles.
     fn clip(mut self, triangles: &mut Vec<[u32; 3]>) {
         let count = self.corners.len();
         for _ in 3..count {
@@ -216,7 +213,6 @@ impl Ring {
         }
     }
 
-    /// A tip between its neighbours.
     fn row(&self, tip: usize) -> [usize; 3] {
         let corner = &self.corners[tip];
         [corner.before, tip, corner.after]
@@ -226,7 +222,6 @@ impl Ring {
         row.map(|place| self.corners[place].vertex)
     }
 
-    /// The next tip of the queue that is an ear.
     fn next_ear(&mut self) -> Option<usize> {
         while let Some((tip, turn)) = self.queue.pop_front() {
             let corner = &self.corners[tip];
@@ -240,7 +235,10 @@ impl Ring {
     /// Whether a tip is an ear; if a corner is in its way, it waits for that one.
     fn is_ear(&mut self, tip: usize) -> bool {
         let row = self.row(tip);
-        let ear = Ear::new(row.map(|place| self.places[place]), self.normal);
+        let ear = Ear {
+            corners: row.map(|place| self.places[place]),
+            normal: self.normal,
+        };
         if !ear.is_tip() {
             return false;
         }
@@ -257,7 +255,6 @@ impl Ring {
         }
     }
 
-    /// Puts a tip at the end of the queue.
     fn enqueue(&mut self, tip: usize) {
         let corner = &mut self.corners[tip];
         corner.turn += 1;
@@ -334,7 +331,6 @@ impl CornerTree {
         None
     }
 
-    /// Takes a corner out.
     fn remove(&mut self, corner: usize) {
         if !std::mem::replace(&mut self.is_left[corner], false) {
             return;

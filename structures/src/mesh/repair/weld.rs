@@ -171,7 +171,6 @@ fn number_by_appearance(kept: Vec<[f64; 3]>, triangles: &mut [[u32; 3]]) -> Vec<
     positions
 }
 
-/// Vertices by their place.
 struct Places {
     reach: f64,
     /// Cells are twice the reach, so that mostly one is looked at for each vertex.

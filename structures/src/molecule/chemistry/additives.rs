@@ -44,7 +44,6 @@ const ADDITIVES: [(&str, &[&str]); 7] = [
     ("unknown atoms or ions", &["UNX"]),
 ];
 
-/// Whether a residue name is that of a buffer or cryo additive.
 pub(crate) fn is_additive(residue_name: &str) -> bool {
     ADDITIVES
         .iter()

@@ -26,14 +26,12 @@ struct Cap<'a> {
     residue: ResidueKey<'a>,
 }
 
-/// All of them, sorted by place.
 pub(crate) struct Caps<'a> {
     atoms: Vec<Cap<'a>>,
     cells: SpatialHash<usize>,
 }
 
 impl Molecule {
-    /// Charges the termini, and counts gaps.
     pub(crate) fn charge_termini(&self, groups: &[Residue<'_>], ph: f64, labels: &mut Labels) {
         let peptide = groups.iter().filter(|residue| residue.is_peptide());
         let peptide: Vec<&Residue<'_>> = peptide.collect();
@@ -69,7 +67,6 @@ impl Molecule {
         Some(squared_distance(c.position, n.position).sqrt())
     }
 
-    /// Whether two peptide residues in a row belong to different chains.
     fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
         let is_broken = self.distance(before, after).is_some_and(|d| d > BOND);
         let (chain, number) = (before.key.chain, before.key.number);
@@ -131,7 +128,6 @@ impl Molecule {
         })
     }
 
-    /// Atoms that may be bonded to the termini.
     pub(crate) fn caps<'a>(&self, groups: &[Residue<'a>]) -> Caps<'a> {
         let mut atoms = Vec::new();
         for group in groups {

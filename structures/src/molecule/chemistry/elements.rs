@@ -21,7 +21,6 @@ pub(crate) struct Element {
     pub(crate) charge: Option<f64>,
 }
 
-/// Kind of an element by the ligands of its ions.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ElementKind {
     NonMetal,
@@ -53,7 +52,6 @@ static ELEMENTS: LazyLock<Vec<Element>> = LazyLock::new(|| {
     lines.map(element).collect()
 });
 
-/// An element by its symbol.
 pub(crate) fn element(symbol: &str) -> Option<&'static Element> {
     ELEMENTS.iter().find(|element| element.symbol == symbol)
 }
@@ -79,7 +77,6 @@ pub(crate) enum NameColumn {
     Unknown,
 }
 
-/// An element and how it was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Resolved {
     /// Symbol as in the periodic table; `D` for deuterium.
@@ -87,7 +84,6 @@ pub(crate) struct Resolved {
     pub(crate) origin: Origin,
 }
 
-/// Source of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// The element column.

@@ -204,7 +204,6 @@ fn by_atoms(heavy: &[&str]) -> Option<&'static str> {
     found.map(|(residue, _)| residue)
 }
 
-/// Whether an atom is hydrogen, or a site without mass.
 fn is_light(name: &str, element: &str) -> bool {
     if matches!(element, "H" | "D" | "T") {
         return true;

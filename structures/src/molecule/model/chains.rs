@@ -32,7 +32,6 @@ pub(crate) struct Chain<'a> {
     pub ends: [Option<[f64; 3]>; 2],
 }
 
-/// Residues that are missing in a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gap {
     /// The residue that follows the gap, by its place in the chain.
@@ -163,7 +162,6 @@ pub(crate) struct CutEnd {
     chain: String,
     number: i64,
     insertion: Option<char>,
-    /// N or C.
     atom: &'static str,
 }
 

@@ -213,7 +213,6 @@ impl ReadReport {
         }
     }
 
-    /// Counts the residues that are kept.
     pub(crate) fn count(&mut self, residues: &[Residue<'_>]) {
         let mut places: HashMap<&str, usize> = HashMap::new();
         let mut groups: BTreeMap<(GroupKind, &str), [usize; 2]> = BTreeMap::new();
@@ -499,7 +498,6 @@ fn show_dropped(dropped: &Dropped) -> String {
 }
 
 impl Altered {
-    /// What was altered, in words.
     fn show(&self) -> String {
         let counted = |number: usize, what: &str, verb: &str| {
             (number, format!("{} {verb}", count(number, what)))

@@ -48,7 +48,6 @@ impl std::fmt::Display for Range {
 }
 
 impl Range {
-    /// Whether a residue is among them.
     fn holds(self, number: i64, insertion: Option<char>) -> bool {
         match self {
             Self::Chain => true,
@@ -134,7 +133,6 @@ pub(crate) struct Picked {
 }
 
 impl Picked {
-    /// Whether a residue of the chain is among them.
     pub(crate) fn holds(&self, number: i64, insertion: Option<char>) -> bool {
         self.residues.holds(number, insertion)
     }
@@ -223,7 +221,6 @@ impl Molecule {
         in_words(&self.numbers_by_chain())
     }
 
-    /// Smallest and largest residue number of each chain.
     fn numbers_by_chain(&self) -> BTreeMap<String, [i64; 2]> {
         let mut chains = BTreeMap::new();
         for atom in &self.atoms {

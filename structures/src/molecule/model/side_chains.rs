@@ -180,7 +180,6 @@ impl Molecule {
             .then_some(HeldSideChain::AlternateLocations)
     }
 
-    /// The turning bonds of a complete side chain.
     fn turning_bonds(
         &self,
         residue: &Residue<'_>,
@@ -263,7 +262,6 @@ impl HeldSideChain {
 /// A heavy atom that a side chain may be bonded to: its place in the molecule.
 struct SideChainBonds<'a> {
     atoms: &'a [Atom],
-    /// Which residue each atom belongs to.
     residue_of: Vec<usize>,
     cells: CellList<usize>,
     origin: [f64; 3],

@@ -71,13 +71,11 @@ impl Molecule {
         found
     }
 
-    /// Conformers beyond a terminus.
     fn past(&self, sampler: &LoopSampler, residue: &Residue<'_>, end: &str) -> Option<Conformers> {
         let frame = self.frame(residue, end)?;
         sampler.traces(frame, &residue.atoms, None, PAST_END)
     }
 
-    /// Conformers across a gap.
     fn bridge(&self, sampler: &LoopSampler, chain: &Chain<'_>, gap: &Gap) -> Option<Conformers> {
         let (before, after) = (chain.residues[gap.after - 1], chain.residues[gap.after]);
         let frame = self.frame(before, "C")?;
@@ -140,7 +138,6 @@ struct LoopSampler {
     cells: SpatialHash<usize>,
 }
 
-/// Data that all trials of one segment share.
 struct Trace<'a> {
     sampler: &'a LoopSampler,
     frame: &'a Conformers,

@@ -25,12 +25,9 @@ const MAX_BACKBONE_DISPLACEMENT: f64 = 2.0;
 /// 60, and more than one atom a letter is a mistake of the file.
 const MAX_OF_NAME: usize = 1000;
 
-/// The lettered atoms of a residue.
 #[derive(Default)]
 struct Lettered<'a> {
-    /// Letters by the residue's name.
     letters: HashMap<&'a str, BTreeSet<char>>,
-    /// Atoms with their letters by the atom's name.
     of_name: HashMap<&'a str, Vec<(&'a Atom, char)>>,
 }
 

@@ -2,15 +2,12 @@
 
 use crate::molecule::read::source::lines;
 
-/// One token of a CIF text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token<'a> {
-    /// 1-based line where it starts.
     pub(crate) line: usize,
     pub(crate) kind: Kind<'a>,
 }
 
-/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind<'a> {
     /// `data_NAME`, with the name.

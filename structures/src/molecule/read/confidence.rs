@@ -181,10 +181,8 @@ const MAX_TIPS: f64 = 0.1;
 /// Least correlation of the value with the number of atoms about; of refined structures mostly -0.35 to -0.7.
 const MIN_PACKING: f64 = -0.3;
 
-/// Distance in Å within which atoms are about one.
 const ABOUT: f64 = 6.0;
 
-/// Most atoms that the correlation is taken over.
 const MAX_SAMPLE: usize = 2000;
 
 /// Whether values alone show a prediction of this mean. Values are times `scale` on the scale of 0 to 100.

@@ -18,9 +18,7 @@ use crate::molecule::read::{
 /// Category of the atom table, in lower case; tags are case-insensitive.
 const ATOMS: &str = "_atom_site";
 
-/// Other categories that are read.
 const CATEGORIES: [&str; 4] = [METHODS, QUALITY, GENERATORS, OPERATORS];
-/// Methods of experiments.
 const METHODS: &str = "_exptl";
 /// Scores of predictions (ModelCIF, Vallat et al., J. Mol. Biol. 435, 168021, 2023).
 const QUALITY: &str = "_ma_qa_metric";
@@ -53,13 +51,11 @@ impl<'a> Categories<'a> {
         self.0.get(category).map_or(&[], Vec::as_slice)
     }
 
-    /// Values of these items of a category.
     fn values(&self, category: &str, items: &[&str]) -> impl Iterator<Item = &'a str> {
         let rows = self.rows(category).iter();
         rows.flat_map(|row| items.iter().filter_map(|item| row.get(*item)?.kind.value()))
     }
 
-    /// Provenance of the coordinates.
     fn provenance(&self) -> Provenance {
         let is_measured = self.values(METHODS, &["method"]).any(is_measured);
         let mut scores = self.values(QUALITY, &["name", "type"]).peekable();
@@ -170,7 +166,6 @@ fn check_closed(token: Token<'_>) -> Result<(), Error> {
     Ok(())
 }
 
-/// The mmCIF text breaks the rules of the format.
 fn broken(line: usize, what: &str) -> Error {
     Error::input(format!("the mmCIF text is broken: {what}"))
         .on_line(line as u64)
@@ -189,7 +184,6 @@ fn atom_item(tag: &str) -> Option<String> {
 /// The atom table as tokens, row after row.
 #[derive(Default)]
 struct Table<'a> {
-    /// 1-based line where it starts.
     line: usize,
     /// Items in column order, lower case.
     items: Vec<String>,
@@ -214,7 +208,6 @@ struct Columns {
     model: Option<usize>,
 }
 
-/// Items of the coordinates.
 const POSITION: [&str; 3] = ["Cartn_x", "Cartn_y", "Cartn_z"];
 
 impl Table<'_> {
@@ -286,7 +279,6 @@ impl Table<'_> {
     }
 }
 
-/// One row of the atom table.
 struct AtomRow<'r, 'a> {
     row: &'r [Token<'a>],
     columns: &'r Columns,
@@ -303,7 +295,6 @@ impl<'a> AtomRow<'_, 'a> {
         token.kind.value().filter(|text| !text.is_empty())
     }
 
-    /// The first of two columns that has a value.
     fn either(&self, [first, second]: [Option<usize>; 2]) -> Option<&'a str> {
         self.value(first).or_else(|| self.value(second))
     }
@@ -321,7 +312,6 @@ impl<'a> AtomRow<'_, 'a> {
         self.certain(column).and_then(coordinate)
     }
 
-    /// A value of one character.
     fn character(&self, column: Option<usize>, item: &str) -> Result<Option<char>, Error> {
         let text = self.value(column).unwrap_or("");
         let mut characters = text.chars();

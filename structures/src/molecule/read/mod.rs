@@ -48,12 +48,10 @@ pub(crate) struct Drops {
 }
 
 impl Drops {
-    /// Drops an atom.
     pub(crate) fn add(&mut self, atom: &Atom, kind: DropKind) {
         self.add_named(atom, kind, kind.counted_by(atom));
     }
 
-    /// Drops an atom that the report counts under a name.
     pub(crate) fn add_named(&mut self, atom: &Atom, kind: DropKind, name: &str) {
         self.report.drop_atoms(kind, name, 1);
         if let Some(fates) = &mut self.fates {

@@ -18,7 +18,6 @@ const CELL: f64 = 2.0;
 /// Largest share of a part's atoms in cells of other models: of two models that overlap some 40% are.
 const MAX_SHARED: f64 = 0.05;
 
-/// Relation between the models of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Relation {
     /// There is but one.
@@ -127,24 +126,14 @@ const ON_AXIS: f64 = 0.5;
 const FEW: usize = 64;
 
 /// Positions of the copies of one atom (Å), and the owner of each.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct Images<T> {
     first: Vec<(T, [f64; 3])>,
     /// All of them, where they are many.
     cells: Option<SpatialHash<(T, [f64; 3])>>,
 }
 
-impl<T> Default for Images<T> {
-    fn default() -> Self {
-        Self {
-            first: Vec::new(),
-            cells: None,
-        }
-    }
-}
-
 impl<T: Copy> Images<T> {
-    /// Whether there is no copy.
     pub(crate) fn is_empty(&self) -> bool {
         self.first.is_empty()
     }
@@ -160,18 +149,18 @@ impl<T: Copy> Images<T> {
         }
     }
 
-    /// Adds a copy.
     pub(crate) fn push(&mut self, owner: T, position: [f64; 3]) {
         match &mut self.cells {
             Some(cells) => cells.push(position, (owner, position)),
-            None => self.first.push((owner, position)),
-        }
-        if self.cells.is_none() && self.first.len() == FEW {
-            let mut cells = SpatialHash::new(ON_AXIS);
-            for &(owner, place) in &self.first {
-                cells.push(place, (owner, place));
+            None => {
+                self.first.push((owner, position));
+                if self.first.len() == FEW {
+                    let cells = self.cells.insert(SpatialHash::new(ON_AXIS));
+                    for &(owner, place) in &self.first {
+                        cells.push(place, (owner, place));
+                    }
+                }
             }
-            self.cells = Some(cells);
         }
     }
 }

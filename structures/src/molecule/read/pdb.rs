@@ -20,7 +20,6 @@ const RECORDS: [&str; 14] = [
     "END", "CONECT", "MASTER", "EXPDTA",
 ];
 
-/// Records that end a chain.
 const ENDS: [&str; 4] = ["TER", "MODEL", "ENDMDL", "END"];
 
 /// Reads the text of a PDB file; of the models those that `model` takes.
@@ -85,7 +84,6 @@ fn misplaced(line: usize) -> Error {
     )
 }
 
-/// The column of the chain.
 fn chain(record: &str) -> &str {
     columns(record, 21, 22)
 }
@@ -110,7 +108,6 @@ fn position(record: &str) -> Option<[f64; 3]> {
     Some([read(30)?, read(38)?, read(46)?])
 }
 
-/// Distinguishes the models.
 #[derive(Default)]
 struct Models {
     /// Columns 13 to 27 of the first atom, and its segid if its chain is blank: what a second model starts with too.

@@ -158,7 +158,6 @@ impl RequestedChains {
         Ok(Self(requested))
     }
 
-    /// Why an atom is left out, if it was not requested.
     fn leaves_out(&self, atom: &Atom) -> Option<DropKind> {
         let Some(parts) = self.0.get(&atom.chain) else {
             return Some(DropKind::Chain);

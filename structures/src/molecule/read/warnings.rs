@@ -10,7 +10,6 @@ use crate::molecule::model::{
 use crate::neighbours::SpatialHash;
 use crate::vector::squared_distance;
 
-/// All warnings.
 pub(crate) fn warnings(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> {
     let mut warnings = traces(atoms, residues);
     warnings.extend(missing_side_chains(atoms, residues));
@@ -23,7 +22,6 @@ pub(crate) fn warnings(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> 
     warnings
 }
 
-/// Names of a residue's atoms.
 fn names<'a>(atoms: &'a [Atom], residue: &Residue<'_>) -> BTreeSet<&'a str> {
     residue
         .members(atoms)
@@ -182,7 +180,6 @@ fn coarse_grained(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<String> {
     })
 }
 
-/// Molecules that are no proteins.
 fn without_protein(residues: &[Residue<'_>]) -> Option<String> {
     let protein = residues
         .iter()
@@ -221,7 +218,6 @@ const ONE_NUMBER: f64 = 1.2;
 /// Most atoms of a cell that are looked at: where there are more, they are counted as far as these show.
 const MAX_IN_CELL: usize = 64;
 
-/// Residues that are shown as examples.
 const SHOWN: usize = 3;
 
 /// Atoms of one chain that are on atoms of another, or of its other residues.
@@ -229,7 +225,6 @@ struct Overlap {
     atoms: usize,
     /// Their least distance, squared (Å²).
     least: f64,
-    /// Their residues.
     residues: BTreeSet<usize>,
 }
 
@@ -306,7 +301,6 @@ fn overlaps(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> {
     warnings
 }
 
-/// Whether two residues are alternatives of one number.
 fn is_one_number(a: &Residue<'_>, b: &Residue<'_>) -> bool {
     a.key.place() == b.key.place() && a.key.name != b.key.name
 }

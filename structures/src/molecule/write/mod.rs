@@ -216,7 +216,6 @@ fn write_rows<W: Write>(
     }
 }
 
-/// Whether a format can hold rows.
 fn check(format: Format, rows: &[Row<'_>]) -> Result<(), Error> {
     for row in rows {
         let atom = row.atom;
@@ -256,7 +255,6 @@ impl<'a, W: Write> ModelWriter<'a, W> {
         }
     }
 
-    /// Writes the head, once.
     fn write_head(&mut self, chains: &[String]) -> io::Result<()> {
         let Some(remarks) = self.remarks.take() else {
             return Ok(());

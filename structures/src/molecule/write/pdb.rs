@@ -78,7 +78,6 @@ pub(super) fn write_model<W: Write>(
     writeln!(writer, "{:<80}", "ENDMDL")
 }
 
-/// Writes the last line.
 pub(super) fn write_end<W: Write>(writer: &mut W) -> io::Result<()> {
     writeln!(writer, "{:<80}", "END")
 }
