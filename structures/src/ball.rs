@@ -1,5 +1,9 @@
 //! A ball.
 
+use std::cmp::Ordering;
+
+use crate::vector::{compare, distance};
+
 /// Largest coordinate, radius or translation of a solid that is read: squares and cubes of lengths, and products of
 /// two cubes, stay finite.
 pub const LARGEST_LENGTH: f64 = 1e30;
@@ -16,6 +20,11 @@ pub struct Ball {
 }
 
 impl Ball {
+    /// The ball of this centre and radius.
+    pub fn new(center: [f64; 3], radius: f64) -> Self {
+        Self { center, radius }
+    }
+
     /// Whether this ball holds all of `other`.
     pub fn holds(&self, other: &Ball) -> bool {
         distance(self.center, other.center) + other.radius <= self.radius
@@ -24,19 +33,21 @@ impl Ball {
     /// This ball grown by `margin`.
     #[must_use]
     pub fn grown(&self, margin: f64) -> Self {
-        Self {
-            center: self.center,
-            radius: self.radius + margin,
-        }
+        Self::new(self.center, self.radius + margin)
     }
 
-    /// Signed distance to another ball: of the spheres where the balls are apart, minus the depth where they meet.
+    /// Lowest and highest corner of its bounding box.
+    pub(crate) fn corners(&self) -> [[f64; 3]; 2] {
+        [-self.radius, self.radius].map(|reach| self.center.map(|x| x + reach))
+    }
+
+    /// Signed distance of the two spheres, below zero if the balls meet.
     pub fn gap(&self, other: &Ball) -> f64 {
         distance(self.center, other.center) - self.radius - other.radius
     }
 }
 
-fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    let [x, y, z] = [a[0] - b[0], a[1] - b[1], a[2] - b[2]];
-    (x * x + y * y + z * z).sqrt()
+/// Order of balls: the largest first, then by the centre's x, y and z.
+pub(crate) fn largest_first(a: &Ball, b: &Ball) -> Ordering {
+    (b.radius.total_cmp(&a.radius)).then_with(|| compare(a.center, b.center))
 }

@@ -14,7 +14,7 @@ enum Cause {
     Lasting,
 }
 
-/// An error for users: what is wrong, the file and line at fault, and what helps.
+/// An error for users: its message, the file and line at fault, and a remedy.
 ///
 /// It is made where the fault is found, by [`Error::input`] and the methods that add to it. `Display` shows the
 /// message alone.

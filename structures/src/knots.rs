@@ -1,5 +1,7 @@
 //! Knots: a solid as a countable set of balls, held as parallel arrays.
 
+use crate::vector::bounds;
+
 /// A set of weighted balls: sum_i c_i of a bump of radius r_i about x_i (B&I section 2.2).
 ///
 /// The arrays have the same length; labels may be absent altogether. Weights are real: the affinity function with its
@@ -12,76 +14,21 @@ pub struct Knots {
     pub radii: Vec<f64>,
     /// Dimensionless weights c_i.
     pub weights: Vec<f64>,
-    /// Weights of the same balls grown by the offset, for the product kernel; empty where `weights` serve them too.
+    /// Weights of the same balls grown by the offset, for the product kernel; empty if `weights` serve them too.
     pub skin_weights: Vec<f64>,
-    /// Charges in units of the elementary charge e, one a knot; empty where the knots carry none (a mesh).
+    /// Charges in units of the elementary charge e, one per knot; empty if the knots carry none (a mesh).
     pub charges: Vec<f64>,
-    /// Contact types, one a knot, `None` for a knot of no known type; empty where the knots carry none.
+    /// Contact types, one per knot, `None` for a knot of no known type; empty if the knots carry none.
     pub contact_types: Vec<Option<u8>>,
-    /// Kinds of atoms ([`crate::molecule::atom_kinds`]), one a knot, `None` for a knot of no known kind; empty where
+    /// Kinds of atoms ([`crate::molecule::atom_kinds`]), one per knot, `None` for a knot of no known kind; empty if
     /// the knots carry none.
     pub atom_kinds: Vec<Option<u8>>,
 }
 
 /// Why a set of knots was refused.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
-pub enum KnotsError {
-    /// The set has no ball at all.
-    #[error("there are no knots; at least one ball is needed")]
-    Empty,
-    /// The parallel arrays differ in length.
-    #[error(
-        "{centers} centres, {radii} radii and {weights} weights: the three must be equally many"
-    )]
-    Lengths {
-        /// Number of centres given.
-        centers: usize,
-        /// Number of radii given.
-        radii: usize,
-        /// Number of weights given.
-        weights: usize,
-    },
-    /// A radius is zero, negative, NaN or infinite.
-    #[error("knot {index} has radius {radius}; radii must be finite and above zero")]
-    Radius {
-        /// Index of the offending knot.
-        index: usize,
-        /// Its radius.
-        radius: f64,
-    },
-    /// A coordinate is NaN or infinite.
-    #[error("knot {index} has centre {center:?}; coordinates must be finite")]
-    Center {
-        /// Index of the offending knot.
-        index: usize,
-        /// Its centre.
-        center: [f64; 3],
-    },
-    /// A weight is NaN or infinite.
-    #[error("knot {index} has a weight that is not finite")]
-    Weight {
-        /// Index of the offending knot.
-        index: usize,
-    },
-    /// A charge is NaN or infinite.
-    #[error("knot {index} has charge {charge}; charges must be finite")]
-    Charge {
-        /// Index of the offending knot.
-        index: usize,
-        /// Its charge in e.
-        charge: f64,
-    },
-    /// There are labels, but not one a knot.
-    #[error("{labels} {name} for {knots} knots; there must be one a knot, or none at all")]
-    Labels {
-        /// Which labels.
-        name: &'static str,
-        /// How many of them were given.
-        labels: usize,
-        /// Number of knots.
-        knots: usize,
-    },
-}
+#[error("{0}")]
+pub struct KnotsError(String);
 
 impl Knots {
     /// Knots of unit weight.
@@ -106,19 +53,15 @@ impl Knots {
             centers,
             radii,
             weights,
-            skin_weights: Vec::new(),
-            charges: Vec::new(),
-            contact_types: Vec::new(),
-            atom_kinds: Vec::new(),
+            ..Self::default()
         };
-        knots.check()?;
-        Ok(knots)
+        knots.checked()
     }
 
     /// The same knots with charges (e) and contact types, either of which may be empty.
     ///
     /// # Errors
-    /// [`KnotsError`] when there are labels but not one a knot, or a charge is not finite.
+    /// [`KnotsError`] when there are labels but not one per knot, or a charge is not finite.
     pub fn with_labels(
         self,
         charges: Vec<f64>,
@@ -129,33 +72,33 @@ impl Knots {
             contact_types,
             ..self
         };
-        knots.check()?;
-        Ok(knots)
+        knots.checked()
     }
 
-    /// The same knots with weights for the balls grown by the offset, one a knot, or none.
+    /// The same knots with weights for the balls grown by the offset, one per knot, or none.
     ///
     /// Grown balls overlap more than the balls do: weights that add up to one in the solid add up to more in its skin.
     ///
     /// # Errors
-    /// [`KnotsError`] when there are weights but not one a knot, or one is not finite.
+    /// [`KnotsError`] when there are weights but not one per knot, or one is not finite.
     pub fn with_skin_weights(self, skin_weights: Vec<f64>) -> Result<Self, KnotsError> {
         let knots = Self {
             skin_weights,
             ..self
         };
-        knots.check()?;
-        Ok(knots)
+        knots.checked()
     }
 
     /// The same knots with kinds of atoms, which may be empty.
     ///
     /// # Errors
-    /// [`KnotsError`] when there are kinds but not one a knot.
+    /// [`KnotsError`] when there are kinds but not one per knot.
     pub fn with_atom_kinds(self, atom_kinds: Vec<Option<u8>>) -> Result<Self, KnotsError> {
-        let knots = Self { atom_kinds, ..self };
-        knots.check()?;
-        Ok(knots)
+        Self { atom_kinds, ..self }.checked()
+    }
+
+    fn checked(self) -> Result<Self, KnotsError> {
+        self.check().map(|()| self)
     }
 
     /// Checks what every user of knots relies on: equal lengths, at least one ball, finite numbers, radii above zero.
@@ -163,39 +106,34 @@ impl Knots {
     /// # Errors
     /// The first fault found, as a [`KnotsError`].
     pub fn check(&self) -> Result<(), KnotsError> {
-        if self.centers.len() != self.radii.len() || self.centers.len() != self.weights.len() {
-            return Err(KnotsError::Lengths {
-                centers: self.centers.len(),
-                radii: self.radii.len(),
-                weights: self.weights.len(),
-            });
+        let refuse = |message| Err(KnotsError(message));
+        let [centers, radii, weights] = [self.centers.len(), self.radii.len(), self.weights.len()];
+        if centers != radii || centers != weights {
+            return refuse(format!(
+                "{centers} centres, {radii} radii and {weights} weights: the three must be equally many"
+            ));
         }
-        if self.centers.is_empty() {
-            return Err(KnotsError::Empty);
+        if centers == 0 {
+            return refuse("there are no knots; at least one ball is needed".to_owned());
         }
-        for (index, ((&center, &radius), weight)) in self
-            .centers
-            .iter()
-            .zip(&self.radii)
-            .zip(&self.weights)
-            .enumerate()
-        {
+        let numbers = self.radii.iter().zip(&self.weights);
+        for (index, (center, (radius, weight))) in self.centers.iter().zip(numbers).enumerate() {
             if !center.iter().all(|c| c.is_finite()) {
-                return Err(KnotsError::Center { index, center });
+                return refuse(format!(
+                    "knot {index} has centre {center:?}; coordinates must be finite"
+                ));
             }
-            if !(radius.is_finite() && radius > 0.0) {
-                return Err(KnotsError::Radius { index, radius });
+            if !(radius.is_finite() && *radius > 0.0) {
+                return refuse(format!(
+                    "knot {index} has radius {radius}; radii must be finite and above zero"
+                ));
             }
             if !weight.is_finite() {
-                return Err(KnotsError::Weight { index });
+                return refuse(format!("knot {index} has a weight that is not finite"));
             }
         }
-        if let Some(index) = self
-            .skin_weights
-            .iter()
-            .position(|weight| !weight.is_finite())
-        {
-            return Err(KnotsError::Weight { index });
+        if let Some(index) = self.skin_weights.iter().position(|one| !one.is_finite()) {
+            return refuse(format!("knot {index} has a weight that is not finite"));
         }
         let labels = [
             ("skin weights", self.skin_weights.len()),
@@ -203,21 +141,20 @@ impl Knots {
             ("contact types", self.contact_types.len()),
             ("atom kinds", self.atom_kinds.len()),
         ];
-        for (name, labels) in labels {
-            if labels != 0 && labels != self.len() {
-                let knots = self.len();
-                return Err(KnotsError::Labels {
-                    name,
-                    labels,
-                    knots,
-                });
-            }
+        if let Some((name, labels)) = labels.into_iter().find(|(_, n)| ![0, centers].contains(n)) {
+            return refuse(format!(
+                "{labels} {name} for {centers} knots; there must be one per knot, or none at all"
+            ));
         }
-        match self.charges.iter().position(|charge| !charge.is_finite()) {
-            Some(index) => Err(KnotsError::Charge {
-                index,
-                charge: self.charges[index],
-            }),
+        match self
+            .charges
+            .iter()
+            .enumerate()
+            .find(|(_, charge)| !charge.is_finite())
+        {
+            Some((index, charge)) => refuse(format!(
+                "knot {index} has charge {charge}; charges must be finite"
+            )),
             None => Ok(()),
         }
     }
@@ -234,15 +171,7 @@ impl Knots {
 
     /// Smallest and largest centre coordinate per axis, in Å.
     pub fn bounds(&self) -> ([f64; 3], [f64; 3]) {
-        let mut low = [f64::INFINITY; 3];
-        let mut high = [f64::NEG_INFINITY; 3];
-        for center in &self.centers {
-            for axis in 0..3 {
-                low[axis] = low[axis].min(center[axis]);
-                high[axis] = high[axis].max(center[axis]);
-            }
-        }
-        (low, high)
+        bounds(self.centers.iter().copied())
     }
 
     /// The distinct radii in rising order, and for each knot the index of its own among them.
@@ -266,21 +195,16 @@ mod tests {
     #[test]
     fn refuses_what_cannot_be_scored() {
         let one = vec![[0.0; 3]];
-        assert_eq!(Knots::new(vec![], vec![]), Err(KnotsError::Empty));
+        let refused = |centers: Vec<[f64; 3]>, radii: Vec<f64>, why: &str| {
+            let error = Knots::new(centers, radii).unwrap_err();
+            assert!(error.to_string().contains(why), "{error}");
+        };
+        refused(vec![], vec![], "no knots");
         for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
-            assert!(matches!(
-                Knots::new(one.clone(), vec![radius]),
-                Err(KnotsError::Radius { index: 0, .. })
-            ));
+            refused(one.clone(), vec![radius], "knot 0 has radius");
         }
-        assert!(matches!(
-            Knots::new(vec![[0.0, f64::NAN, 0.0]], vec![1.0]),
-            Err(KnotsError::Center { index: 0, .. })
-        ));
-        assert!(matches!(
-            Knots::new(one, vec![1.0, 2.0]),
-            Err(KnotsError::Lengths { .. })
-        ));
+        refused(vec![[0.0, f64::NAN, 0.0]], vec![1.0], "knot 0 has centre");
+        refused(one, vec![1.0, 2.0], "1 centres, 2 radii and 1 weights");
     }
 
     #[test]

@@ -49,6 +49,8 @@ pub mod knots;
 pub mod mesh;
 #[cfg(feature = "molecule")]
 pub mod molecule;
+#[cfg_attr(not(feature = "mesh"), allow(dead_code))]
+mod motion;
 pub mod neighbours;
 pub mod numeric;
 mod polar_atom;

@@ -1,13 +1,13 @@
-//! What an atom may do in a hydrogen bond.
+//! The part of an atom in hydrogen bonds.
 
-/// What an atom may do in a hydrogen bond, as a label of its own beside those of [`Knots`](crate::Knots).
+/// The part of an atom in hydrogen bonds: a label beside those of [`Knots`](crate::Knots).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct PolarAtom {
     /// Whether it may give a hydrogen.
     pub donates: bool,
     /// Whether it may take one.
     pub accepts: bool,
-    /// Unit vector away from the heavy atoms that it is bonded to; zero where it has none, or where they surround it.
+    /// Unit vector away from the heavy atoms that it is bonded to; zero if there are none, or if they surround it.
     pub direction: [f64; 3],
 }
 

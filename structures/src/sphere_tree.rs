@@ -9,24 +9,21 @@
 use crate::ball::Ball;
 use crate::vector::{along, distance, subtract};
 
-/// A node: a ball, and the two that it was made of unless it is a leaf.
+/// A ball that holds all balls below, and the indices of the two that it was made of unless it is a leaf.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct SphereNode {
-    /// Holds all balls below.
-    pub ball: Ball,
-    /// Indices of the two below; none in a leaf.
-    pub children: Option<[usize; 2]>,
+struct SphereNode {
+    ball: Ball,
+    children: Option<[usize; 2]>,
 }
 
 /// The tree. Leaves come first, in the order of the balls given; the root is last.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SphereTree {
     nodes: Vec<SphereNode>,
-    leaves: usize,
 }
 
 /// The smallest ball that holds two.
-pub fn enclosing(a: &Ball, b: &Ball) -> Ball {
+fn enclosing(a: &Ball, b: &Ball) -> Ball {
     let spacing = distance(a.center, b.center);
     if spacing + b.radius <= a.radius {
         return *a;
@@ -35,17 +32,11 @@ pub fn enclosing(a: &Ball, b: &Ball) -> Ball {
         return *b;
     }
     let radius = 0.5 * (spacing + a.radius + b.radius);
-    let center = along(
-        a.center,
-        (radius - a.radius) / spacing,
-        subtract(b.center, a.center),
-    );
+    let share = (radius - a.radius) / spacing;
+    let center = along(a.center, share, subtract(b.center, a.center));
     // Rounding of the centre must not let a child peep out.
     let reach = |ball: &Ball| distance(center, ball.center) + ball.radius;
-    Ball {
-        center,
-        radius: reach(a).max(reach(b)) * (1.0 + 4.0 * f64::EPSILON),
-    }
+    Ball::new(center, reach(a).max(reach(b)) * (1.0 + 4.0 * f64::EPSILON))
 }
 
 /// A ball not yet merged, and the partner with which it makes the least ball.
@@ -56,47 +47,41 @@ struct Open {
     cost: f64,
 }
 
+impl Open {
+    fn alone(node: usize) -> Self {
+        Self {
+            node,
+            partner: node,
+            cost: f64::INFINITY,
+        }
+    }
+}
+
 impl SphereTree {
     /// Merges `balls`; ties go to the earlier ones. `None` without balls.
     pub fn new(balls: &[Ball]) -> Option<Self> {
-        let mut nodes: Vec<SphereNode> = balls
-            .iter()
-            .map(|&ball| SphereNode {
-                ball,
-                children: None,
-            })
-            .collect();
-        let mut open: Vec<Open> = (0..nodes.len())
-            .map(|node| Open {
-                node,
-                partner: node,
-                cost: f64::INFINITY,
-            })
-            .collect();
+        let leaf = |&ball: &Ball| SphereNode {
+            ball,
+            children: None,
+        };
+        let mut nodes: Vec<SphereNode> = balls.iter().map(leaf).collect();
+        let mut open: Vec<Open> = (0..nodes.len()).map(Open::alone).collect();
         for index in 0..open.len() {
             open[index] = partnered(&nodes, &open, open[index].node);
         }
         while open.len() > 1 {
             // The least cost, then the earliest.
-            let best = (1..open.len()).fold(0, |best, at| {
-                if open[at].cost < open[best].cost {
-                    at
-                } else {
-                    best
-                }
-            });
-            let Open { node, partner, .. } = open[best];
+            let best = open.iter().min_by(|a, b| a.cost.total_cmp(&b.cost));
+            let Some(&Open { node, partner, .. }) = best else {
+                break;
+            };
             let merged = nodes.len();
             nodes.push(SphereNode {
                 ball: enclosing(&nodes[node].ball, &nodes[partner].ball),
                 children: Some([node.min(partner), node.max(partner)]),
             });
             open.retain(|other| other.node != node && other.node != partner);
-            open.push(Open {
-                node: merged,
-                partner: merged,
-                cost: f64::INFINITY,
-            });
+            open.push(Open::alone(merged));
             // A ball about more costs no less, so only partners of what was merged look again.
             for index in 0..open.len() {
                 if [node, partner, merged].contains(&open[index].partner) {
@@ -104,20 +89,7 @@ impl SphereTree {
                 }
             }
         }
-        (!nodes.is_empty()).then_some(Self {
-            nodes,
-            leaves: balls.len(),
-        })
-    }
-
-    /// The nodes: leaves first, the root last.
-    pub fn nodes(&self) -> &[SphereNode] {
-        &self.nodes
-    }
-
-    /// Number of leaves.
-    pub fn leaves(&self) -> usize {
-        self.leaves
+        (!nodes.is_empty()).then_some(Self { nodes })
     }
 
     /// The level of detail with at most `count` balls (one at least): from the root down, the largest ball is replaced
@@ -125,10 +97,8 @@ impl SphereTree {
     pub fn level(&self, count: usize) -> Vec<Ball> {
         let mut cut = vec![self.nodes.len() - 1];
         while cut.len() < count {
-            let splittable = cut
-                .iter()
-                .enumerate()
-                .filter(|(_, node)| self.nodes[**node].children.is_some());
+            let all = cut.iter().enumerate();
+            let splittable = all.filter(|(_, node)| self.nodes[**node].children.is_some());
             let largest = splittable.max_by(|(_, a), (_, b)| {
                 let radius = |node: &usize| self.nodes[*node].ball.radius;
                 radius(a).total_cmp(&radius(b)).then(b.cmp(a))
@@ -145,18 +115,13 @@ impl SphereTree {
 /// An open ball with its best partner among the others.
 fn partnered(nodes: &[SphereNode], open: &[Open], node: usize) -> Open {
     let own = nodes[node].ball;
-    let mut best = Open {
-        node,
-        partner: node,
-        cost: f64::INFINITY,
-    };
+    let mut best = Open::alone(node);
     for other in open.iter().filter(|other| other.node != node) {
         let ball = nodes[other.node].ball;
         // The radius of the enclosing ball.
         let spacing = distance(own.center, ball.center);
-        let cost = (0.5 * (spacing + own.radius + ball.radius))
-            .max(own.radius)
-            .max(ball.radius);
+        let around = 0.5 * (spacing + own.radius + ball.radius);
+        let cost = around.max(own.radius).max(ball.radius);
         if cost < best.cost {
             best.partner = other.node;
             best.cost = cost;
@@ -170,10 +135,7 @@ mod tests {
     use super::*;
 
     fn ball(x: f64, y: f64, z: f64, radius: f64) -> Ball {
-        Ball {
-            center: [x, y, z],
-            radius,
-        }
+        Ball::new([x, y, z], radius)
     }
 
     #[test]
@@ -207,10 +169,10 @@ mod tests {
     fn every_ball_holds_those_below_it_and_every_level_holds_the_leaves() {
         let balls = jumbled();
         let tree = SphereTree::new(&balls).unwrap();
-        assert_eq!((tree.leaves(), tree.nodes().len()), (200, 399));
-        for node in tree.nodes() {
+        assert_eq!(tree.nodes.len(), 399);
+        for node in &tree.nodes {
             for child in node.children.into_iter().flatten() {
-                assert!(node.ball.holds(&tree.nodes()[child].ball));
+                assert!(node.ball.holds(&tree.nodes[child].ball));
             }
         }
         let mut last = f64::INFINITY;

@@ -1,5 +1,7 @@
 //! Vectors of three, as arrays.
 
+use std::cmp::Ordering;
+
 /// a + b.
 pub(crate) fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
@@ -20,12 +22,10 @@ pub(crate) fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
     add(a, scale(b, s))
 }
 
-/// The inner product.
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
-/// The vector product.
 pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [
         a[1] * b[2] - a[2] * b[1],
@@ -34,24 +34,40 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// The length.
 pub(crate) fn norm(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
-/// The distance between two points.
 pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     norm(subtract(a, b))
 }
 
+pub(crate) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
+    let away = subtract(a, b);
+    dot(away, away)
+}
+
+/// Order of points by x, then y, then z.
+pub(crate) fn compare(a: [f64; 3], b: [f64; 3]) -> Ordering {
+    let pairs = a.iter().zip(&b);
+    pairs.fold(Ordering::Equal, |order, (a, b)| order.then(a.total_cmp(b)))
+}
+
 /// The smallest and the largest coordinate of points on each axis.
-pub(crate) fn bounds(points: impl IntoIterator<Item = [f64; 3]>) -> ([f64; 3], [f64; 3]) {
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
+pub(crate) fn bounds<const N: usize>(
+    points: impl IntoIterator<Item = [f64; N]>,
+) -> ([f64; N], [f64; N]) {
+    let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
     for point in points {
-        for axis in 0..3 {
+        for axis in 0..N {
             low[axis] = low[axis].min(point[axis]);
             high[axis] = high[axis].max(point[axis]);
         }
     }
     (low, high)
+}
+
+/// The longest edge of a box from its lowest to its highest corner.
+pub(crate) fn extent((low, high): ([f64; 3], [f64; 3])) -> f64 {
+    subtract(high, low).into_iter().fold(0.0, f64::max)
 }

@@ -2,11 +2,11 @@
 //!
 //! # Formats, by the ending of the name
 //!
-//! - **`.csv`**: a row a ball, columns `x,y,z,r` and perhaps `weight`, named by a header or in this order without one
+//! - **`.csv`**: one row per ball, columns `x,y,z,r` and perhaps `weight`, named by a header or in this order without one
 //!   (`table`). `knotdock sample` writes such tables.
 //! - **`.yml`, `.yaml`, `.json`**: any mapping with a `radius` and a `center` or `origin` of three numbers is a ball
 //!   (`spheres`). This reads cuRobo's `collision_spheres` and what foam writes. Balls are grouped by the link, or the
-//!   level of detail, that they stand under.
+//!   level of detail above them.
 //!
 //! Lengths are in the file's unit. Errors carry the line.
 
@@ -37,7 +37,7 @@ enum Format {
 pub struct BallFile {
     /// The balls.
     pub balls: Vec<Ball>,
-    /// A weight a ball; `None` where the file gives none.
+    /// One weight per ball; `None` if the file gives none.
     pub weights: Option<Vec<f64>>,
     /// The link or level that was read, where the file has groups.
     pub group: Option<String>,

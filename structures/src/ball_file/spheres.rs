@@ -1,7 +1,7 @@
 //! Sphere lists of robot descriptions.
 //!
 //! A sphere is a mapping with `radius` and `center` (cuRobo) or `origin` (foam). The innermost key above a list of
-//! spheres names their link, but for foam's `spheres`, which stands in a link of its own or in one of several levels of
+//! spheres names their link, but for foam's `spheres`, which is in a link or in one of several levels of
 //! detail. Of levels the last, finest one is read.
 //!
 //! JSON is read as the YAML that it is.
@@ -15,7 +15,6 @@ use crate::error::Error;
 /// Key under which foam lists the spheres of one decomposition.
 const FOAM_LIST: &str = "spheres";
 
-/// The spheres under one name.
 struct Group {
     name: String,
     balls: Vec<Ball>,
@@ -126,10 +125,10 @@ fn sphere(node: &Node) -> Result<Ball, Error> {
     let [x, y, z] = &parts[..] else {
         return Err(missing());
     };
-    Ok(Ball {
-        center: [scalar(x, "x")?, scalar(y, "y")?, scalar(z, "z")?],
-        radius: scalar(radius, "radius")?,
-    })
+    Ok(Ball::new(
+        [scalar(x, "x")?, scalar(y, "y")?, scalar(z, "z")?],
+        scalar(radius, "radius")?,
+    ))
 }
 
 /// Deepest nesting that is read; lists of spheres have about five levels.
@@ -150,7 +149,6 @@ enum Value {
 }
 
 impl Node {
-    /// The value under a key of a mapping.
     fn get(&self, key: &str) -> Option<&Node> {
         match &self.value {
             Value::Mapping(entries) => {
@@ -162,7 +160,6 @@ impl Node {
     }
 }
 
-/// The documents of a text.
 fn documents(text: &str) -> Result<Vec<Node>, Error> {
     let mut open: Vec<(Node, Option<Node>)> = Vec::new();
     let mut documents = Vec::new();

@@ -4,7 +4,7 @@ use super::{BallFile, bad_radius, number, number_of};
 use crate::ball::{Ball, SMALLEST_RADIUS};
 use crate::error::Error;
 
-/// Names of the columns, in the order in which they stand without a header.
+/// Names of the columns, in their order without a header.
 const COLUMNS: [(&str, &str); 5] = [
     ("x", "x"),
     ("y", "y"),
@@ -13,7 +13,7 @@ const COLUMNS: [(&str, &str); 5] = [
     ("weight", "weight"),
 ];
 
-/// Where each column stands; the last one need not be there.
+/// Place of each column; the last is optional.
 struct Places {
     place: [usize; 4],
     weight: Option<usize>,

@@ -5,10 +5,7 @@ fn read(name: &str, text: &str) -> Result<BallFile, Error> {
 }
 
 fn ball(x: f64, y: f64, z: f64, radius: f64) -> Ball {
-    Ball {
-        center: [x, y, z],
-        radius,
-    }
+    Ball::new([x, y, z], radius)
 }
 
 #[test]

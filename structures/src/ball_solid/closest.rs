@@ -1,7 +1,7 @@
 //! The signed distance of two unions of balls: best-first descent of two sphere trees.
 //!
-//! The signed distance of a pair of balls is d - r - s. The least over all pairs is the distance of the unions where
-//! they are apart. Where they meet, it is minus the depth of the deepest pair, which no shorter translation can part.
+//! The signed distance of a pair of balls is d - r - s. The least over all pairs is the distance of unions that do not
+//! meet. Of unions that meet, it is minus the depth of the deepest pair, which no shorter translation can separate.
 //!
 //! A pair of nodes is opened only while the balls about them could hold a closer pair than the one known. The larger of
 //! the two is replaced by its halves, the closer half first. The largest balls of two nodes are tried before their
@@ -9,14 +9,14 @@
 //!
 //! A search stops when its limits say so and can go on. Until it has finished, it knows a lower bound as well.
 
+use super::Motion;
 use super::hierarchy::{BallHierarchy, Node};
-use super::motion::Motion;
 use crate::ball::Ball;
 
 /// Nodes of fewer balls do not try their largest ones first.
 const TRIED_FIRST: u32 = 16;
 
-/// What a search need not find.
+/// Bounds beyond which a search need not go.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Limits {
     /// Pairs at this signed distance or farther do not count.
@@ -36,10 +36,9 @@ impl Limits {
 /// Result of a search as far as it went.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Closest {
-    /// The closest pair found: its balls' numbers in the first and the second tree. `None` where all pairs seen are
-    /// ignored.
+    /// The closest pair found: its balls' numbers in the first and the second tree. `None` if all pairs seen are ignored.
     pub pair: Option<[usize; 2]>,
-    /// Signed distance of that pair, or where pairs are ignored from.
+    /// Signed distance of that pair, or [`Limits::ignored_from`].
     pub distance: f64,
     /// No pair is closer than this.
     pub lower: f64,
@@ -56,7 +55,7 @@ struct Open {
     nodes: [u32; 2],
 }
 
-/// A search under way. Buffers are kept from one search to the next.
+/// A search in progress. Buffers are kept from one search to the next.
 #[derive(Debug, Default)]
 pub struct ClosestSearch {
     /// The last is opened next.
@@ -146,7 +145,7 @@ impl ClosestSearch {
         if a.count.min(b.count) >= TRIED_FIRST {
             self.try_largest(trees, motion, [a, b]);
             if self.best < limits.enough_below {
-                // What is left open stays so: the search has seen enough, not all.
+                // It stays open: the search has seen enough, not all.
                 self.open.push(open);
                 return;
             }
@@ -188,10 +187,7 @@ impl ClosestSearch {
     fn compare(&mut self, trees: [&BallHierarchy; 2], motion: &Motion, [a, b]: [&Node; 2]) {
         self.ball_pairs += (a.count * b.count) as usize;
         for (second, ball) in (b.first..).zip(trees[1].members(b)) {
-            let moved = Ball {
-                center: motion.apply(ball.center),
-                radius: ball.radius,
-            };
+            let moved = Ball::new(motion.apply(ball.center), ball.radius);
             for (first, other) in (a.first..).zip(trees[0].members(a)) {
                 // Compared as squares: a root only where a pair is closer than the best.
                 let [x, y, z] = [0, 1, 2].map(|axis| other.center[axis] - moved.center[axis]);

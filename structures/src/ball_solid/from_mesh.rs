@@ -1,10 +1,8 @@
 //! The solid of a mesh as balls, by Algorithm 1.
 
-use super::{BallSolid, density, mean_center};
+use super::{BallHierarchy, BallSolid, density, mean_center};
 use crate::Error;
 use crate::ball::Ball;
-use crate::ball_solid::BallHierarchy;
-use crate::knots::Knots;
 use crate::mesh::Solid;
 use crate::numeric::Bump;
 use crate::sampling::decomposition::{DecompositionOptions, reduce};
@@ -23,7 +21,7 @@ pub struct MeshSampling {
     pub grid_epsilon: f64,
     /// No point of the solid is farther from the inner balls; of meshes that are not closed, as measured.
     pub inward: f64,
-    /// Share of the solid's volume that the inner balls miss; `None` where the grid sees no volume.
+    /// Share of the solid's volume that the inner balls miss; `None` if the grid sees no volume.
     pub missed: Option<f64>,
 }
 
@@ -47,7 +45,7 @@ impl BallSolid {
         let balls = a1.balls;
         let fit = meter.measure(&balls);
         let grid_epsilon = field.grid.epsilon();
-        // The inner balls grown by this hold a closed mesh for certain; of others it is what was measured.
+        // The inner balls grown by this hold a closed mesh for certain; for others it is measured.
         let inward = fit.inward_bound.unwrap_or(fit.hausdorff_inward);
         let epsilon = grid_epsilon.max(inward);
         let few = few_of(&balls, grid_epsilon);
@@ -58,10 +56,9 @@ impl BallSolid {
         };
         let (unit, origin) = (solid.frame().unit, solid.frame().origin);
         let scaled = |balls: &[Ball]| -> Vec<Ball> {
-            let scaled = balls.iter().map(|ball| Ball {
-                center: ball.center.map(|x| x * unit),
-                radius: ball.radius * unit,
-            });
+            let scaled = balls
+                .iter()
+                .map(|ball| Ball::new(ball.center.map(|x| x * unit), ball.radius * unit));
             scaled.collect()
         };
         let few = scaled(&few);
@@ -70,7 +67,7 @@ impl BallSolid {
         } else {
             mean_center(&few, &weights)
         };
-        let density: Knots = density(&few, &weights).map_err(|_| SampleError::NothingInside)?;
+        let density = density(&few, &weights).map_err(|_| SampleError::NothingInside)?;
         let solid = Self {
             origin,
             hierarchy: BallHierarchy::new(&scaled(&balls)),
@@ -104,15 +101,15 @@ impl Solid {
     }
 }
 
-/// Most balls of a density: 200 squared pairs are summed in about a millisecond.
-const MOST: usize = 200;
+/// Most balls of a density: their pairs are summed in about a millisecond.
+const MAX_BALLS: usize = 200;
 
 /// The originals of A3, at an eps that leaves few enough of them.
 fn few_of(balls: &[Ball], epsilon: f64) -> Vec<Ball> {
     let mut reach = epsilon;
     loop {
         let kept = reduce(balls, reach);
-        if kept.len() <= MOST {
+        if kept.len() <= MAX_BALLS {
             return kept.into_iter().map(|index| balls[index]).collect();
         }
         reach *= 1.25;

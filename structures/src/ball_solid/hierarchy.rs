@@ -5,13 +5,12 @@
 
 use crate::ball::Ball;
 use crate::neighbours::box_tree::box_tree;
+use crate::vector::{add, along, bounds, distance, scale, subtract};
 
-/// Balls in a leaf at most.
 const LEAF: usize = 4;
 /// Steps by which the centre of a bounding ball is moved towards what reaches out farthest.
 const STEPS: i32 = 24;
 
-/// Some of the balls.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Node {
     /// A ball that holds all of them.
@@ -30,7 +29,7 @@ pub(super) struct Node {
 pub struct BallHierarchy {
     /// In the order of the tree.
     balls: Vec<Ball>,
-    /// Where each stood in the list given.
+    /// Index of each in the list given.
     order: Vec<u32>,
     /// Nodes in depth-first order; none without balls.
     nodes: Vec<Node>,
@@ -98,7 +97,7 @@ impl BallHierarchy {
         &self.balls
     }
 
-    /// Where each ball, in the order of the tree, stood in the list given to [`Self::new`].
+    /// Index of each ball, in the order of the tree, in the list given to [`Self::new`].
     pub fn order(&self) -> &[u32] {
         &self.order
     }
@@ -112,7 +111,6 @@ impl BallHierarchy {
         &self.nodes
     }
 
-    /// The balls of a node.
     #[inline(always)]
     pub(super) fn members(&self, node: &Node) -> &[Ball] {
         &self.balls[node.first as usize..(node.first + node.count) as usize]
@@ -125,45 +123,35 @@ fn bounding(balls: &[(usize, Ball)]) -> Ball {
     if let [(_, only)] = balls {
         return *only;
     }
-    let (mut low, mut high) = ([f64::INFINITY; 3], [f64::NEG_INFINITY; 3]);
-    for (_, ball) in balls {
-        for axis in 0..3 {
-            low[axis] = low[axis].min(ball.center[axis] - ball.radius);
-            high[axis] = high[axis].max(ball.center[axis] + ball.radius);
-        }
-    }
-    let mut center = [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
+    let (low, high) = bounds(balls.iter().flat_map(|(_, ball)| ball.corners()));
+    let mut center = add(scale(low, 0.5), scale(high, 0.5));
     let mut best = farthest(balls, center);
     let mut bound = (center, best.0);
     for step in 2..STEPS + 2 {
         let (reach, at) = best;
         let ball = &balls[at].1;
-        let toward = [0, 1, 2].map(|axis| ball.center[axis] - center[axis]);
+        let toward = subtract(ball.center, center);
         let length = reach - ball.radius;
         if length <= 0.0 {
             break;
         }
-        // The far point of the ball stands `reach` away; the step goes a share of that.
+        // The far point of the ball is `reach` away; the step goes a share of that.
         let share = reach / length / f64::from(step);
-        center = [0, 1, 2].map(|axis| center[axis] + share * toward[axis]);
+        center = along(center, share, toward);
         best = farthest(balls, center);
         if best.0 < bound.1 {
             bound = (center, best.0);
         }
     }
     // Rounding must not let a ball peep out.
-    Ball {
-        center: bound.0,
-        radius: bound.1 * (1.0 + 4.0 * f64::EPSILON),
-    }
+    Ball::new(bound.0, bound.1 * (1.0 + 4.0 * f64::EPSILON))
 }
 
 /// How far the balls reach out from a point, and which of them does.
 fn farthest(balls: &[(usize, Ball)], center: [f64; 3]) -> (f64, usize) {
     let mut best = (0.0, 0);
     for (at, (_, ball)) in balls.iter().enumerate() {
-        let [x, y, z] = [0, 1, 2].map(|axis| ball.center[axis] - center[axis]);
-        let reach = (x * x + y * y + z * z).sqrt() + ball.radius;
+        let reach = distance(ball.center, center) + ball.radius;
         if reach > best.0 {
             best = (reach, at);
         }

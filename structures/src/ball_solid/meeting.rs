@@ -1,7 +1,7 @@
 //! All pairs of balls of two solids that meet.
 
+use super::Motion;
 use super::hierarchy::BallHierarchy;
-use super::motion::Motion;
 use crate::ball::Ball;
 
 /// Finds pairs that meet. Buffers are kept from one search to the next.
@@ -37,10 +37,7 @@ impl MeetingPairs {
             }
             if a.second == 0 && b.second == 0 {
                 for (second, ball) in (b.first as usize..).zip(trees[1].members(b)) {
-                    let moved = Ball {
-                        center: motion.apply(ball.center),
-                        radius: ball.radius,
-                    };
+                    let moved = Ball::new(motion.apply(ball.center), ball.radius);
                     for (first, other) in (a.first as usize..).zip(trees[0].members(a)) {
                         let (squared, meets) = meet(other, moved.center, moved.radius, margin);
                         if meets && !found([first, second], &moved, squared) {

@@ -1,4 +1,4 @@
-//! Solids as balls between which their surface is known to lie.
+//! Solids between two sets of balls, one inside and one around.
 //!
 //! # What is certain
 //!
@@ -7,7 +7,7 @@
 //!
 //! - inner balls that meet certify a hit, also where one solid contains the other;
 //! - outer balls that do not meet certify a miss;
-//! - the distance of the solids lies between that of the outer and that of the inner balls.
+//! - the distance of the solids is between that of the outer and that of the inner balls.
 //!
 //! Since outer balls are inner balls grown, one tree serves both sets: a pair of balls with the signed distance g has
 //! the signed distance g - `eps_A` - `eps_B` once grown.
@@ -28,26 +28,26 @@ mod closest;
 mod from_mesh;
 mod hierarchy;
 mod meeting;
-mod motion;
 
 pub use closest::{Closest, ClosestSearch, Limits};
 pub use from_mesh::MeshSampling;
 pub use hierarchy::BallHierarchy;
 pub use meeting::MeetingPairs;
-pub use motion::Motion;
+
+pub use crate::motion::Motion;
 
 use crate::ball::Ball;
 use crate::knots::{Knots, KnotsError};
-use crate::vector::{norm, subtract};
+use crate::vector::{add, norm, scale, subtract};
 
 /// A solid between two sets of balls.
 #[derive(Clone, Debug)]
 pub struct BallSolid {
-    /// Where the stored coordinates have their zero, in the file's coordinates.
+    /// The zero of the stored coordinates, in the file's coordinates.
     origin: [f64; 3],
     /// The inner balls, relative to `origin`.
     hierarchy: BallHierarchy,
-    /// What the inner balls must grow by to hold the solid.
+    /// Margin by which the inner balls grow to hold the solid.
     epsilon: f64,
     /// Centre of mass of the solid, relative to `origin`.
     centroid: [f64; 3],
@@ -56,21 +56,17 @@ pub struct BallSolid {
 }
 
 impl BallSolid {
-    /// The union of `balls`, which are weighted by `weights` where their overlap counts; in the file's coordinates.
+    /// The union of `balls`, in the file's coordinates; `weights` count where they overlap.
     ///
     /// # Errors
     /// [`KnotsError`] without balls, with radii not above zero, or with numbers that are not finite.
     pub fn from_balls(balls: &[Ball], weights: Option<&[f64]>) -> Result<Self, KnotsError> {
         let ones = vec![1.0; balls.len()];
         let weights = weights.unwrap_or(&ones);
-        let knots = Knots::with_weights(
-            balls.iter().map(|ball| ball.center).collect(),
-            balls.iter().map(|ball| ball.radius).collect(),
-            weights.to_vec(),
-        )?;
-        let (low, high) = knots.bounds();
-        let origin = [0, 1, 2].map(|axis| 0.5 * low[axis] + 0.5 * high[axis]);
-        let moved: Vec<Ball> = balls.iter().map(|ball| relative(ball, origin)).collect();
+        let (low, high) = weighted(balls, weights.to_vec())?.bounds();
+        let origin = add(scale(low, 0.5), scale(high, 0.5));
+        let relative = |ball: &Ball| Ball::new(subtract(ball.center, origin), ball.radius);
+        let moved: Vec<Ball> = balls.iter().map(relative).collect();
         let centroid = mean_center(&moved, weights);
         Ok(Self {
             origin,
@@ -81,7 +77,7 @@ impl BallSolid {
         })
     }
 
-    /// Where the stored coordinates have their zero, in the file's coordinates.
+    /// The zero of the stored coordinates, in the file's coordinates.
     pub fn origin(&self) -> [f64; 3] {
         self.origin
     }
@@ -102,7 +98,7 @@ impl BallSolid {
         grown.collect()
     }
 
-    /// How far the surface may lie outside of the inner balls.
+    /// Largest distance of the surface from the inner balls.
     pub fn epsilon(&self) -> f64 {
         self.epsilon
     }
@@ -122,14 +118,6 @@ impl BallSolid {
     pub fn reach(&self) -> f64 {
         let reach = |ball: &Ball| norm(ball.center) + ball.radius;
         self.inner().iter().map(reach).fold(0.0, f64::max) + self.epsilon
-    }
-}
-
-/// A ball relative to a point.
-fn relative(ball: &Ball, origin: [f64; 3]) -> Ball {
-    Ball {
-        center: subtract(ball.center, origin),
-        radius: ball.radius,
     }
 }
 
@@ -161,9 +149,14 @@ fn density(balls: &[Ball], weights: &[f64]) -> Result<Knots, KnotsError> {
         .map(|(ball, &weight)| (ball, if any { weight } else { 1.0 }))
         .filter(|(_, weight)| *weight > 0.0)
         .unzip();
-    Knots::with_weights(
-        balls.iter().map(|ball| ball.center).collect(),
-        balls.iter().map(|ball| ball.radius).collect(),
-        weights,
-    )
+    weighted(balls, weights)
+}
+
+fn weighted<'a>(
+    balls: impl IntoIterator<Item = &'a Ball>,
+    weights: Vec<f64>,
+) -> Result<Knots, KnotsError> {
+    let parts = balls.into_iter().map(|ball| (ball.center, ball.radius));
+    let (centers, radii) = parts.unzip();
+    Knots::with_weights(centers, radii, weights)
 }

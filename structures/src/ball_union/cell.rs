@@ -10,7 +10,7 @@
 
 use std::f64::consts::FRAC_PI_2;
 
-use crate::vector::{cross, dot};
+use crate::vector::{along, cross, dot, norm, subtract};
 
 /// A half-space n x <= offset, with n of length one.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -153,13 +153,12 @@ impl Cell {
         true
     }
 
-    /// Whether a vertex is in the half-space.
     fn keeps(&self, vertex: u32) -> bool {
         self.beyond[vertex as usize] <= 0.0
     }
 
-    /// Appends a loop as the half-space leaves it. Where it leaves the half-space it goes on to where it enters next;
-    /// rounding may let it leave repeatedly.
+    /// Appends the part of a loop in the half-space. From the point where it leaves the half-space it goes on to the next
+    /// point where it enters; rounding may let it leave repeatedly.
     fn cut_loop(&mut self, first: usize, end: usize) {
         let (mut left, mut entered) = (None, None);
         let mut from = self.loops[end - 1];
@@ -194,7 +193,7 @@ impl Cell {
         let [a, b] = edge.map(|vertex| self.vertices[vertex as usize]);
         let [before, after] = edge.map(|vertex| self.beyond[vertex as usize]);
         let share = before / (before - after);
-        let between = [0, 1, 2].map(|axis| a[axis] + share * (b[axis] - a[axis]));
+        let between = along(a, share, subtract(b, a));
         let vertex = match self.free.pop() {
             Some(free) => {
                 self.vertices[free as usize] = between;
@@ -231,34 +230,34 @@ fn cone(plane: &Plane, corners: impl Iterator<Item = [f64; 3]> + Clone) -> f64 {
     let height = offset.abs();
     // Square of the disc's radius.
     let square = 1.0 - height * height;
-    let (mut triangles, mut angle, mut less) = (0.0, Turn::default(), Turn::default());
+    let (mut triangles, mut angle, mut less) = (0.0, AngleSum::default(), AngleSum::default());
     let Some(mut from) = corners.clone().last() else {
         return 0.0;
     };
     for to in corners {
-        let edge = [0, 1, 2].map(|axis| to[axis] - from[axis]);
-        let length = dot(edge, edge).sqrt();
+        let edge = subtract(to, from);
+        let length = norm(edge);
         if length > 0.0 {
-            let along = edge.map(|part| part / length);
-            let apart = dot(normal, cross(from, along));
-            let start = dot(from, along) - offset * dot(normal, along);
+            let direction = edge.map(|part| part / length);
+            let arm = dot(normal, cross(from, direction));
+            let start = dot(from, direction) - offset * dot(normal, direction);
             let end = start + length;
             let mut outside = |from: f64, to: f64| {
-                let slant = |t: f64| (height * height + apart * apart + t * t).sqrt();
+                let slant = |t: f64| (height * height + arm * arm + t * t).sqrt();
                 let (near, far) = (slant(from), slant(to));
-                angle.add(apart * apart + from * to, apart * (to - from));
+                angle.add(arm * arm + from * to, arm * (to - from));
                 // The angle less the solid angle of the cone to the triangle.
                 less.add(
-                    apart * apart * near * far + height * height * from * to,
-                    height * apart * (to * near - from * far),
+                    arm * arm * near * far + height * height * from * to,
+                    height * arm * (to * near - from * far),
                 );
             };
-            let half = square - apart * apart;
+            let half = square - arm * arm;
             if square <= 0.0 || half <= 0.0 {
                 outside(start, end);
             } else {
                 let half = half.sqrt();
-                triangles += apart * (end.clamp(-half, half) - start.clamp(-half, half));
+                triangles += arm * (end.clamp(-half, half) - start.clamp(-half, half));
                 if start < -half {
                     outside(start, end.min(-half));
                 }
@@ -279,13 +278,13 @@ fn cone(plane: &Plane, corners: impl Iterator<Item = [f64; 3]> + Clone) -> f64 {
 
 /// A sum of angles, each from minus pi to pi, for one arc tangent.
 #[derive(Default)]
-struct Turn {
+struct AngleSum {
     quarters: f64,
     /// Tangent of the rest, from -1 to 1.
     tangent: f64,
 }
 
-impl Turn {
+impl AngleSum {
     /// Adds the angle of a point of the plane; nothing for the origin.
     fn add(&mut self, x: f64, y: f64) {
         let tangent = if x.abs() >= y.abs() {

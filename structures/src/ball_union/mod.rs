@@ -16,8 +16,10 @@ mod lens;
 
 use std::f64::consts::PI;
 
-use super::neighbours::box_tree::{BoxNode, LEAF, box_tree};
-use super::{Ball, Knots};
+use crate::ball::{Ball, largest_first};
+use crate::knots::Knots;
+use crate::neighbours::box_tree::{BoxNode, LEAF, box_tree};
+use crate::vector::{compare, distance, dot, norm, subtract};
 use cell::{Cell, Plane};
 pub use lens::lens_volume;
 
@@ -30,14 +32,14 @@ pub struct Volume {
     pub error: f64,
 }
 
-/// Volumes of two unions of balls and of what they share.
+/// Volumes of two unions of balls and of their intersection.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Overlap {
     /// Of the first.
     pub first: f64,
     /// Of the second.
     pub second: f64,
-    /// Of the region that lies in both.
+    /// Of the intersection.
     pub shared: f64,
     /// Bound of the error of each.
     pub error: f64,
@@ -57,29 +59,29 @@ impl Overlap {
 
 /// Volume of the union of balls.
 pub fn union_volume(balls: &Knots) -> Volume {
-    volume_of_union(&listed(balls))
+    volume_of_union(&balls_of(balls))
 }
 
 /// As [`union_volume`], of a list.
 pub fn volume_of_union(balls: &[Ball]) -> Volume {
     let balls = Arrangement::new([balls, &[]]);
-    let (mut cell, mut met) = (Cell::default(), Met::default());
+    let (mut cell, mut meeting) = (Cell::default(), Meeting::default());
     let mut sum = Volume::default();
     for (number, ball) in balls.balls.iter().enumerate() {
-        balls.find(number, &mut met);
-        if met.own.covered {
+        balls.find(number, &mut meeting);
+        if meeting.own.covered {
             continue;
         }
         cell.reset();
-        met.own.cut(&mut cell);
-        sum.add(part(ball, &mut cell, &[&met.own]), 1.0);
+        meeting.own.cut(&mut cell);
+        sum.add(part(ball, &mut cell, &[&meeting.own]), 1.0);
     }
     sum
 }
 
-/// Volumes of two unions of balls, in one frame, and of what they share.
+/// Volumes of two unions of balls, in one frame, and of their intersection.
 pub fn overlap(first: &Knots, second: &Knots) -> Overlap {
-    let [a, b] = [listed(first), listed(second)];
+    let [a, b] = [balls_of(first), balls_of(second)];
     let [one, other] = [&a, &b].map(|balls| volume_of_union(balls));
     let shared = shared_volume(&a, &b);
     Overlap {
@@ -93,17 +95,17 @@ pub fn overlap(first: &Knots, second: &Knots) -> Overlap {
 /// Volume that two unions of balls share, in one frame. Exchanging the two changes no bit.
 pub fn shared_volume(first: &[Ball], second: &[Ball]) -> Volume {
     let balls = Arrangement::new([first, second]);
-    let (mut cell, mut met) = (Cell::default(), Met::default());
+    let (mut cell, mut meeting) = (Cell::default(), Meeting::default());
     let mut sums = [Volume::default(); 2];
     for (number, ball) in balls.balls.iter().enumerate() {
         let sum = &mut sums[usize::from(number >= balls.split)];
-        balls.find(number, &mut met);
-        let other = met.other.last;
-        match met.other.count {
+        balls.find(number, &mut meeting);
+        let other = meeting.other.last;
+        match meeting.other.count {
             0 => {}
             // The other half comes with the other ball.
             1 if balls.partners(other) == 1 => sum.add(lens(ball, &balls.balls[other]), 0.5),
-            _ => add_lost(ball, &mut met, &mut cell, sum),
+            _ => add_lost(ball, &mut meeting, &mut cell, sum),
         }
     }
     let [one, other] = sums;
@@ -131,23 +133,21 @@ const CLEAR: f64 = 1e-3;
 /// Rounding of one term of a cell's volume, in cubes of the ball's radius.
 const ROUNDING: f64 = 1e-15;
 
-fn listed(balls: &Knots) -> Vec<Ball> {
+fn balls_of(balls: &Knots) -> Vec<Ball> {
     let balls = balls.centers.iter().zip(&balls.radii);
-    let listed = balls.map(|(&center, &radius)| Ball { center, radius });
-    listed.collect()
+    balls
+        .map(|(&center, &radius)| Ball::new(center, radius))
+        .collect()
 }
 
 fn lens(a: &Ball, b: &Ball) -> Volume {
-    let distance = length(between(a, b));
+    let distance = distance(a.center, b.center);
     let (larger, smaller) = (a.radius.max(b.radius), a.radius.min(b.radius));
     let value = lens_volume(a.radius, b.radius, distance);
     // The distance of the centres is rounded; the lens changes by at most the smaller great disc for each unit.
     let edge = 4.0 * f64::EPSILON * (distance + larger) * PI * smaller * smaller;
-    let error = if distance <= larger - smaller {
-        0.0
-    } else {
-        edge
-    };
+    let is_inside = distance <= larger - smaller;
+    let error = if is_inside { 0.0 } else { edge };
     Volume {
         value,
         error: error.min(ball_volume(smaller)) + 8.0 * f64::EPSILON * value,
@@ -156,14 +156,6 @@ fn lens(a: &Ball, b: &Ball) -> Volume {
 
 fn ball_volume(radius: f64) -> f64 {
     4.0 / 3.0 * PI * radius.powi(3)
-}
-
-fn between(from: &Ball, to: &Ball) -> [f64; 3] {
-    [0, 1, 2].map(|axis| to.center[axis] - from.center[axis])
-}
-
-fn length(vector: [f64; 3]) -> f64 {
-    vector.iter().map(|part| part * part).sum::<f64>().sqrt()
 }
 
 impl Volume {
@@ -187,8 +179,8 @@ enum Cut {
 
 /// How `other`, which meets `ball`, cuts its cell.
 fn cut(ball: &Ball, other: &Ball) -> Cut {
-    let arm = between(ball, other);
-    let distance = length(arm);
+    let arm = subtract(other.center, ball.center);
+    let distance = norm(arm);
     let (r, s) = (ball.radius, other.radius);
     if distance == 0.0 {
         return match s.total_cmp(&r) {
@@ -225,7 +217,7 @@ struct Cuts {
     covered: bool,
     /// Whether one is the ball.
     same: bool,
-    /// Radius of the largest one, in radii of the ball: so much is a plane's place rounded.
+    /// Radius of the largest one, in radii of the ball: the rounding of a plane's place is in proportion to it.
     largest: f64,
 }
 
@@ -254,14 +246,10 @@ impl Cuts {
     }
 
     /// Cuts a cell; whether any plane took something away. The plane that cuts deepest comes first, so the order does
-    /// not depend on that of the balls, and what is beyond all vertices is never sorted.
+    /// not depend on that of the balls, and planes beyond all vertices are never sorted.
     fn cut(&mut self, cell: &mut Cell) -> bool {
         let order = |a: &Plane, b: &Plane| {
-            let by_axis = |axis: usize| a.normal[axis].total_cmp(&b.normal[axis]);
-            (a.offset.total_cmp(&b.offset))
-                .then_with(|| by_axis(0))
-                .then_with(|| by_axis(1))
-                .then_with(|| by_axis(2))
+            (a.offset.total_cmp(&b.offset)).then_with(|| compare(a.normal, b.normal))
         };
         let mut any = false;
         let (mut rest, mut sorted) = (&mut self.planes[..], SORTED_FIRST);
@@ -286,9 +274,9 @@ impl Cuts {
     }
 }
 
-/// The balls that meet one, of its own union and of the other.
+/// Balls that meet one, of the same union and of the other.
 #[derive(Default)]
-struct Met {
+struct Meeting {
     own: Cuts,
     other: Cuts,
 }
@@ -312,13 +300,7 @@ impl Arrangement {
             for ball in &mut balls {
                 ball.center = ball.center.map(|part| part + 0.0);
             }
-            balls.sort_unstable_by(|a, b| {
-                let by_axis = |axis: usize| a.center[axis].total_cmp(&b.center[axis]);
-                (b.radius.total_cmp(&a.radius))
-                    .then_with(|| by_axis(0))
-                    .then_with(|| by_axis(1))
-                    .then_with(|| by_axis(2))
-            });
+            balls.sort_unstable_by(largest_first);
             balls.dedup();
             balls
         });
@@ -340,13 +322,11 @@ impl Arrangement {
         }
     }
 
-    /// Whether two balls are of one union.
     fn together(&self, one: usize, other: usize) -> bool {
         (one < self.split) == (other < self.split)
     }
 
-    /// Visits the balls that meet one.
-    fn visit_met(&self, number: usize, mut visit: impl FnMut(&Ball, usize)) {
+    fn visit_meeting(&self, number: usize, mut visit: impl FnMut(&Ball, usize)) {
         let ball = &self.balls[number];
         let mut at = 0;
         while let Some(node) = self.nodes.get(at) {
@@ -362,7 +342,8 @@ impl Arrangement {
             }
             if node.second == 0 {
                 for (other, name) in &self.members[node.first..node.first + node.count] {
-                    let meets = within(between(ball, other), ball.radius + other.radius);
+                    let away = subtract(other.center, ball.center);
+                    let meets = within(away, ball.radius + other.radius);
                     if meets && *name != number {
                         visit(other, *name);
                     }
@@ -383,12 +364,12 @@ impl Arrangement {
     }
 
     /// Finds what meets a ball.
-    fn find(&self, number: usize, met: &mut Met) {
-        let Met { own, other } = met;
+    fn find(&self, number: usize, meeting: &mut Meeting) {
+        let Meeting { own, other } = meeting;
         own.clear();
         other.clear();
         let ball = &self.balls[number];
-        self.visit_met(number, |with, name| {
+        self.visit_meeting(number, |with, name| {
             let cuts = match self.together(number, name) {
                 true => &mut *own,
                 false => &mut *other,
@@ -400,20 +381,17 @@ impl Arrangement {
     /// Number of balls of the other union that meet one.
     fn partners(&self, number: usize) -> usize {
         let mut count = 0;
-        self.visit_met(number, |_, name| {
+        self.visit_meeting(number, |_, name| {
             count += usize::from(!self.together(number, name));
         });
         count
     }
 }
 
-/// Whether a vector is shorter than a length.
 fn within(vector: [f64; 3], reach: f64) -> bool {
-    let [x, y, z] = vector;
-    x * x + y * y + z * z < reach * reach
+    dot(vector, vector) < reach * reach
 }
 
-/// The part of a ball in its cell.
 fn part(ball: &Ball, cell: &mut Cell, cuts: &[&Cuts]) -> Volume {
     let cube = ball.radius.powi(3);
     let blur = |cuts: &&Cuts| 4.0 * cuts.planes.len() as f64 * (1.0 + cuts.largest);
@@ -426,7 +404,7 @@ fn part(ball: &Ball, cell: &mut Cell, cuts: &[&Cuts]) -> Volume {
 
 /// Adds the part of a ball that its cell loses to the other union. Of a ball that is in both unions each copy gets half
 /// of the cell.
-fn add_lost(ball: &Ball, Met { own, other }: &mut Met, cell: &mut Cell, sum: &mut Volume) {
+fn add_lost(ball: &Ball, Meeting { own, other }: &mut Meeting, cell: &mut Cell, sum: &mut Volume) {
     if own.covered {
         return;
     }
@@ -586,7 +564,7 @@ mod tests {
             let pairs = first.iter().flat_map(|a| {
                 let lenses = second
                     .iter()
-                    .map(|b| lens_volume(a.radius, b.radius, length(between(a, b))));
+                    .map(|b| lens_volume(a.radius, b.radius, distance(a.center, b.center)));
                 lenses.collect::<Vec<_>>()
             });
             let exact: f64 = pairs.sum();
@@ -609,10 +587,7 @@ mod tests {
                 let ball = |_| {
                     let (center, radius) = ([0; 3].map(|_| 4.0 * random() - 2.0), 0.3 + random());
                     match symmetric {
-                        true => Ball {
-                            center: center.map(f64::round),
-                            radius: (2.0 * radius).ceil() / 2.0,
-                        },
+                        true => Ball::new(center.map(f64::round), (2.0 * radius).ceil() / 2.0),
                         false => Ball { center, radius },
                     }
                 };
@@ -653,10 +628,7 @@ mod tests {
                 let ball = |ball: &Ball| {
                     let [x, y, z] = turn(ball.center);
                     let [z, x, y] = turn([z, x, y]);
-                    Ball {
-                        center: [x, y, z],
-                        radius: ball.radius,
-                    }
+                    Ball::new([x, y, z], ball.radius)
                 };
                 list.iter().map(ball).collect::<Vec<_>>()
             });

@@ -1,49 +1,43 @@
 //! Long thin triangles cut into shorter pieces, so that trees over them have compact clusters.
 //!
-//! A cylinder of thousands of sides is as long at every side, whatever the number of sides. A tree can only part its
-//! triangles lengthwise, so that each cluster reaches from end to end and no search leaves any out. The surface stays
-//! the same; only its pieces change.
+//! A tree can only divide the sides of a cylinder lengthwise, so that each cluster reaches from end to end and no search
+//! leaves any out. The surface stays the same; only its pieces change.
 
-use crate::mesh::triangle_mesh::Mesh;
-use crate::vector::{along, distance, subtract};
+use crate::mesh::triangle_mesh::{Mesh, doubled_normal, longest_side};
+use crate::vector::{along, distance, norm, subtract};
 
 /// A triangle is a sliver if its longest side is more than this times its height.
 const ASPECT: f64 = 16.0;
 
 /// Fewer slivers than this are no trouble.
-const FEWEST: usize = 512;
+const MIN_COUNT: usize = 512;
 
 /// Lengths into which a sliver is cut, on average, and all together at most.
 const LENGTHS: usize = 24;
 const MAX_LENGTHS: usize = 400_000;
 
 /// No sliver is cut into lengths shorter than this share of the bounding box's longest edge.
-const SHORTEST: f64 = 1.0 / 64.0;
+const MIN_LENGTH: f64 = 1.0 / 64.0;
 
 /// The triangles that have an area, slivers cut up; none where there are few slivers.
 pub(super) fn cut(mesh: &Mesh) -> Option<Vec<[[f64; 3]; 3]>> {
-    let triangles = mesh.triangles.iter().copied();
-    let triangles: Vec<[[f64; 3]; 3]> = triangles
-        .filter(|&triangle| !mesh.is_sliver(triangle))
-        .map(|triangle| mesh.corners(triangle))
-        .collect();
+    let triangles: Vec<_> = mesh.with_area(mesh.triangles.iter().copied()).collect();
     let slivers = triangles.iter().filter(|corners| is_thin(corners));
     let (count, length) = slivers.fold((0, 0.0), |(count, length), corners| {
-        (count + 1, length + longest(corners))
+        (count + 1, length + longest_side(corners))
     });
-    if count < FEWEST {
+    if count < MIN_COUNT {
         return None;
     }
-    let limit = (length / (LENGTHS * count).min(MAX_LENGTHS) as f64).max(SHORTEST * mesh.extent());
+    let limit =
+        (length / (LENGTHS * count).min(MAX_LENGTHS) as f64).max(MIN_LENGTH * mesh.extent());
     let mut pieces = Vec::new();
     for corners in triangles {
-        match is_thin(&corners) {
-            true => cut_across(
-                corners,
-                (longest(&corners) / limit).ceil() as usize,
-                &mut pieces,
-            ),
-            false => pieces.push(corners),
+        if is_thin(&corners) {
+            let count = (longest_side(&corners) / limit).ceil() as usize;
+            cut_across(corners, count, &mut pieces);
+        } else {
+            pieces.push(corners);
         }
     }
     Some(pieces)
@@ -74,12 +68,7 @@ fn cut_across(corners: [[f64; 3]; 3], count: usize, pieces: &mut Vec<[[f64; 3]; 
     }
 }
 
-fn longest(&[a, b, c]: &[[f64; 3]; 3]) -> f64 {
-    distance(a, b).max(distance(b, c)).max(distance(c, a))
-}
-
 fn is_thin(corners: &[[f64; 3]; 3]) -> bool {
-    let longest = longest(corners);
-    longest * longest
-        > ASPECT * crate::vector::norm(crate::mesh::triangle_mesh::doubled_normal(*corners))
+    let longest = longest_side(corners);
+    longest * longest > ASPECT * norm(doubled_normal(*corners))
 }

@@ -4,16 +4,16 @@ use std::path::Path;
 
 use crate::error::Error;
 use crate::mesh::repair::weld::degenerate;
-use crate::mesh::triangle_mesh::Mesh;
-use crate::mesh::triangle_tree::{TriangleTree, centroid};
+use crate::mesh::triangle_mesh::{Mesh, centroid};
+use crate::mesh::triangle_tree::TriangleTree;
 use crate::mesh::{slivers, winding};
 use crate::neighbours::box_tree::{BoxNode, box_tree};
-use crate::vector::{along, bounds, cross, distance, dot, scale, subtract};
+use crate::vector::{along, bounds, cross, distance, dot, scale, squared_distance, subtract};
 
-/// Where a solid's own coordinates y stand in the file's: x = origin + unit y.
+/// A solid's coordinates y in those of its file: x = origin + unit y.
 ///
-/// The origin is the middle of the bounding box, so that an offset costs no digits. The unit is a power of two: it
-/// costs none either, and doubling every length of a file changes no bit of what is computed.
+/// The origin is the middle of the bounding box, so that an offset costs no digits. The unit is a power of two, so that
+/// doubling every length of a file changes no bit of the results.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Frame {
     /// Middle of the bounding box, in the file's unit.
@@ -48,13 +48,16 @@ impl Frame {
     }
 }
 
-/// A solid to ask about points. All coordinates and lengths are those of its [`Frame`].
+/// A solid for queries at points. All coordinates and lengths are those of its [`Frame`].
 pub struct Solid {
     frame: Frame,
     mesh: Mesh,
-    surface: Surface,
     tree: TriangleTree,
     half_sides: [f64; 3],
+    /// Corners of the triangles that have an area, with their number among these, in the order of `boxes`.
+    triangles: Vec<(usize, [[f64; 3]; 3])>,
+    /// A tree of bounding boxes, for distances.
+    boxes: Vec<BoxNode<([f64; 3], [f64; 3])>>,
 }
 
 impl Mesh {
@@ -87,6 +90,18 @@ impl Solid {
             triangles: mesh.triangles.clone(),
             closed: mesh.closed,
         };
+        // Triangles without area are within the edges of their neighbours, and projecting to one divides zero by zero.
+        let with_area = mesh.with_area(mesh.triangles.iter().copied());
+        let mut triangles: Vec<_> = with_area.enumerate().collect();
+        if triangles.is_empty() {
+            return Err(degenerate(mesh.triangles.len()));
+        }
+        let boxes = box_tree(
+            &mut triangles,
+            LEAF,
+            |&(number, corners)| (centroid(corners), number),
+            |triangles| bounds(triangles.iter().flat_map(|(_, corners)| *corners)),
+        );
         let (low, high) = mesh.bounds();
         let tree = match slivers::cut(&mesh) {
             Some(pieces) => TriangleTree::of(pieces),
@@ -94,14 +109,15 @@ impl Solid {
         };
         Ok(Self {
             frame,
-            surface: Surface::new(&mesh)?,
             tree,
             half_sides: [0, 1, 2].map(|axis| high[axis].max(-low[axis])),
+            triangles,
+            boxes,
             mesh,
         })
     }
 
-    /// Where the solid's coordinates stand in the file's.
+    /// The solid's coordinates in those of the file.
     pub fn frame(&self) -> Frame {
         self.frame
     }
@@ -136,12 +152,19 @@ impl Solid {
 
     /// Distance to the surface, zero or above.
     pub fn distance(&self, point: [f64; 3]) -> f64 {
-        self.surface.distance(point)
+        distance(self.nearest(point), point)
     }
 
-    /// As [`distance`](Self::distance), given that it is no larger than `bound`; much faster where the bound is close.
+    /// As [`distance`](Self::distance), given that it is no larger than `bound`; much faster if the bound is close.
     pub fn distance_within(&self, point: [f64; 3], bound: f64) -> f64 {
-        self.surface.distance_within(point, bound)
+        // The search takes what is nearer than the bound, which may be rounded.
+        let bound = bound * (1.0 + 1e-9) + f64::MIN_POSITIVE;
+        let mut best = (bound * bound, [f64::NAN; 3]);
+        self.search_nearest(0, point, &mut best);
+        if best.1[0].is_nan() {
+            return self.distance(point);
+        }
+        distance(best.1, point)
     }
 
     /// Signed distance: to the surface, above zero inside and below outside.
@@ -156,77 +179,30 @@ impl Solid {
 
     /// The nearest point of the surface.
     pub fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
-        self.surface.nearest(point)
-    }
-}
-
-/// The triangles of a mesh in a tree of bounding boxes, to measure distances to.
-struct Surface {
-    /// Corners, with the triangle's number among those that have an area.
-    triangles: Vec<(usize, [[f64; 3]; 3])>,
-    nodes: Vec<BoxNode<([f64; 3], [f64; 3])>>,
-}
-
-/// Triangles in a leaf at most.
-const LEAF: usize = 4;
-
-impl Surface {
-    /// Triangles without area are left out: they lie within the edges of their neighbours, and projecting to one
-    /// divides zero by zero.
-    fn new(mesh: &Mesh) -> Result<Self, Error> {
-        let with_area = mesh.triangles.iter().filter(|&&t| !mesh.is_sliver(t));
-        let mut triangles: Vec<_> = with_area.map(|&t| mesh.corners(t)).enumerate().collect();
-        if triangles.is_empty() {
-            return Err(degenerate(mesh.triangles.len()));
-        }
-        let nodes = box_tree(
-            &mut triangles,
-            LEAF,
-            |&(number, corners)| (centroid(corners), number),
-            |triangles| bounds(triangles.iter().flat_map(|(_, corners)| *corners)),
-        );
-        Ok(Self { triangles, nodes })
-    }
-
-    /// The nearest point of the surface.
-    fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
         let mut best = (f64::INFINITY, [f64::NAN; 3]);
-        self.search(0, point, &mut best);
+        self.search_nearest(0, point, &mut best);
         best.1
     }
+}
 
-    /// The distance to the surface, given that it is no larger than `bound`, which spares most of the search.
-    fn distance_within(&self, point: [f64; 3], bound: f64) -> f64 {
-        // The search takes what is nearer than the bound, and the bound may carry rounding of its own.
-        let bound = bound * (1.0 + 1e-9) + f64::MIN_POSITIVE;
-        let mut best = (bound * bound, [f64::NAN; 3]);
-        self.search(0, point, &mut best);
-        if best.1[0].is_nan() {
-            return self.distance(point);
-        }
-        distance(best.1, point)
-    }
+const LEAF: usize = 4;
 
-    /// The distance to the surface.
-    fn distance(&self, point: [f64; 3]) -> f64 {
-        distance(self.nearest(point), point)
-    }
-
+impl Solid {
     /// Finds the nearest point below a node, if its squared distance is less than that in `best`.
-    fn search(&self, at: usize, point: [f64; 3], best: &mut (f64, [f64; 3])) {
-        let node = &self.nodes[at];
+    fn search_nearest(&self, at: usize, point: [f64; 3], best: &mut (f64, [f64; 3])) {
+        let node = &self.boxes[at];
         if node.second == 0 {
             for &(_, corners) in &self.triangles[node.first..node.first + node.count] {
                 let near = nearest_on(corners, point);
-                let away = subtract(near, point);
-                if dot(away, away) < best.0 {
-                    *best = (dot(away, away), near);
+                let squared = squared_distance(near, point);
+                if squared < best.0 {
+                    *best = (squared, near);
                 }
             }
             return;
         }
         let halves = [at + 1, node.second].map(|half| {
-            let (low, high) = &self.nodes[half].known;
+            let (low, high) = &self.boxes[half].known;
             let beyond = [0, 1, 2].map(|axis| {
                 let outside = (low[axis] - point[axis]).max(point[axis] - high[axis]);
                 outside.max(0.0)
@@ -241,7 +217,7 @@ impl Surface {
         };
         for (bound, half) in [a, b] {
             if bound < best.0 {
-                self.search(half, point, best);
+                self.search_nearest(half, point, best);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Triangle meshes.
 
-use crate::vector::{add, bounds, cross, dot, norm, scale, subtract};
+use crate::vector::{add, bounds, cross, distance, dot, extent, norm, scale, subtract};
 
 /// A triangle mesh with distinct vertices, oriented outward as far as it can be.
 #[derive(Clone, Debug, PartialEq)]
@@ -32,9 +32,17 @@ impl Mesh {
         self.closed
     }
 
-    /// The corner points of a triangle.
     pub(crate) fn corners(&self, triangle: [u32; 3]) -> [[f64; 3]; 3] {
         triangle.map(|corner| self.positions[corner as usize])
+    }
+
+    /// Corner points of those of these triangles that have an area.
+    pub(crate) fn with_area(
+        &self,
+        triangles: impl Iterator<Item = [u32; 3]>,
+    ) -> impl Iterator<Item = [[f64; 3]; 3]> {
+        let with_area = triangles.filter(|&triangle| !self.is_sliver(triangle));
+        with_area.map(|triangle| self.corners(triangle))
     }
 
     /// Smallest and largest coordinate on each axis, in the file's unit.
@@ -44,38 +52,31 @@ impl Mesh {
 
     /// Longest edge of the bounding box, in the file's unit.
     pub fn extent(&self) -> f64 {
+        extent(self.bounds())
+    }
+
+    /// Corner points of all triangles relative to the middle of the bounding box, which comes first.
+    fn centered(&self) -> ([f64; 3], impl Iterator<Item = [[f64; 3]; 3]>) {
         let (low, high) = self.bounds();
-        (0..3)
-            .map(|axis| high[axis] - low[axis])
-            .fold(0.0, f64::max)
+        let middle = scale(add(low, high), 0.5);
+        let triangles = self.triangles.iter();
+        let relative = move |&triangle| self.corners(triangle).map(|at| subtract(at, middle));
+        (middle, triangles.map(relative))
     }
 
     /// Volume inside, in the file's unit cubed, by the divergence theorem; parts that overlap count twice, and that of
-    /// an open mesh depends on where its bounding box stands.
+    /// an open mesh depends on the middle of its bounding box.
     pub fn volume(&self) -> f64 {
-        let (low, high) = self.bounds();
-        let middle = scale(add(low, high), 0.5);
-        self.triangles
-            .iter()
-            .map(|&triangle| {
-                let [a, b, c] = self
-                    .corners(triangle)
-                    .map(|corner| subtract(corner, middle));
-                dot(a, cross(b, c)) / 6.0
-            })
-            .sum()
+        let (_, triangles) = self.centered();
+        triangles.map(|[a, b, c]| dot(a, cross(b, c)) / 6.0).sum()
     }
 
     /// Centre of mass of a closed mesh, in the file's unit, by the divergence theorem; parts that overlap count twice.
-    /// The middle of the bounding box where the volume is zero.
+    /// The middle of the bounding box if the volume is zero.
     pub fn centroid(&self) -> [f64; 3] {
-        let (low, high) = self.bounds();
-        let middle = scale(add(low, high), 0.5);
+        let (middle, triangles) = self.centered();
         let (mut volume, mut moment) = (0.0, [0.0; 3]);
-        for &triangle in &self.triangles {
-            let [a, b, c] = self
-                .corners(triangle)
-                .map(|corner| subtract(corner, middle));
+        for [a, b, c] in triangles {
             let part = dot(a, cross(b, c));
             volume += part;
             moment = add(moment, scale(add(a, add(b, c)), 0.25 * part));
@@ -89,13 +90,9 @@ impl Mesh {
 
     /// Area of the surface, in the file's unit squared.
     pub fn area(&self) -> f64 {
-        self.triangles
-            .iter()
-            .map(|&triangle| self.area_of(triangle))
-            .sum()
+        self.triangles.iter().map(|&t| self.area_of(t)).sum()
     }
 
-    /// Area of one triangle, in the file's unit squared.
     pub(crate) fn area_of(&self, triangle: [u32; 3]) -> f64 {
         norm(doubled_normal(self.corners(triangle))) / 2.0
     }
@@ -103,22 +100,19 @@ impl Mesh {
     /// Whether a triangle has no area to speak of.
     pub(crate) fn is_sliver(&self, triangle: [u32; 3]) -> bool {
         let [a, b, c] = self.corners(triangle);
-        let longest = [subtract(b, a), subtract(c, b), subtract(a, c)]
-            .map(norm)
-            .into_iter()
-            .fold(0.0, f64::max);
+        let longest = longest_side(&[a, b, c]);
         norm(doubled_normal([a, b, c])) <= SLIVER * longest * longest
     }
 
-    /// Whether all vertices lie in one plane, to within rounding.
+    /// Whether all vertices are in one plane, to within rounding.
     pub(crate) fn is_flat(&self) -> bool {
+        let normal_of = |triangle: &[u32; 3]| doubled_normal(self.corners(*triangle));
         let normals = self
             .triangles
             .iter()
-            .map(|&t| (t, doubled_normal(self.corners(t))));
-        let Some((triangle, normal)) =
-            normals.max_by(|(_, a), (_, b)| norm(*a).total_cmp(&norm(*b)))
-        else {
+            .map(|triangle| (triangle, normal_of(triangle)));
+        let largest = normals.max_by(|(_, a), (_, b)| norm(*a).total_cmp(&norm(*b)));
+        let Some((triangle, normal)) = largest else {
             return true;
         };
         let origin = self.positions[triangle[0] as usize];
@@ -126,6 +120,14 @@ impl Mesh {
         let off = |position: &[f64; 3]| dot(subtract(*position, origin), normal).abs();
         self.positions.iter().map(off).fold(0.0, f64::max) <= 1e-13 * self.extent()
     }
+}
+
+pub(crate) fn longest_side(&[a, b, c]: &[[f64; 3]; 3]) -> f64 {
+    distance(a, b).max(distance(b, c)).max(distance(c, a))
+}
+
+pub(crate) fn centroid([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
+    scale(add(a, add(b, c)), 1.0 / 3.0)
 }
 
 /// The normal of a triangle, outward by its orientation, as long as twice its area.

@@ -1,9 +1,8 @@
-//! Triangles in a binary tree of clusters, with what sums over far clusters need of each.
+//! Triangles in a binary tree of clusters, with the moments that sums over far clusters need.
 
-use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
+use crate::mesh::triangle_mesh::{Mesh, centroid, doubled_normal};
 use crate::vector::{add, bounds, distance, norm, scale};
 
-/// Triangles in a leaf.
 const LEAF: usize = 8;
 
 /// A binary tree over triangles that have an area; halves at the median of the longest side.
@@ -11,29 +10,11 @@ const LEAF: usize = 8;
 pub(crate) struct TriangleTree {
     /// Corners, in the order of the leaves.
     triangles: Vec<[[f64; 3]; 3]>,
-    /// Nodes in depth-first order.
-    nodes: Vec<Node>,
+    nodes: Vec<Cluster>,
 }
 
 #[derive(Debug)]
-struct Node {
-    /// Area-weighted middle.
-    center: [f64; 3],
-    /// No corner is farther from the middle.
-    radius: f64,
-    /// Sum of areas.
-    area: f64,
-    /// Sum of area times outward normal.
-    area_vector: [f64; 3],
-    /// Its triangles.
-    first: u32,
-    count: u32,
-    /// Nodes below this one, which follow it.
-    below: u32,
-}
-
-/// A cluster of triangles as a visitor sees it.
-pub(crate) struct Cluster<'a> {
+pub(crate) struct Cluster {
     /// Area-weighted middle.
     pub center: [f64; 3],
     /// No corner is farther from the middle.
@@ -42,29 +23,24 @@ pub(crate) struct Cluster<'a> {
     pub area: f64,
     /// Sum of area times outward normal.
     pub area_vector: [f64; 3],
-    /// Its triangles, if it has no clusters below.
-    pub leaf: Option<&'a [[[f64; 3]; 3]]>,
+    /// Its triangles.
+    pub first: u32,
+    count: u32,
+    /// Nodes below this one, which follow it.
+    below: u32,
 }
 
 impl TriangleTree {
     /// The tree over a mesh's triangles. Those without area have no solid angle and no share of any integral, so
     /// they are left out.
     pub fn new(mesh: &Mesh) -> Self {
-        let triangles = mesh.triangles.iter().copied();
-        Self::of(
-            triangles
-                .filter(|&triangle| !mesh.is_sliver(triangle))
-                .map(|triangle| mesh.corners(triangle))
-                .collect(),
-        )
+        Self::of(mesh.with_area(mesh.triangles.iter().copied()).collect())
     }
 
     /// The tree over triangles that have an area.
     pub fn of(triangles: Vec<[[f64; 3]; 3]>) -> Self {
-        let mut placed: Vec<Placed> = triangles
-            .into_iter()
-            .map(|corners| (centroid(corners), corners))
-            .collect();
+        let place = |corners| (centroid(corners), corners);
+        let mut placed: Vec<Placed> = triangles.into_iter().map(place).collect();
         let mut nodes = Vec::with_capacity(4 * placed.len() / LEAF + 1);
         build(&mut placed, 0, &mut nodes);
         let triangles = placed.into_iter().map(|(_, corners)| corners).collect();
@@ -76,31 +52,21 @@ impl TriangleTree {
         &self.triangles
     }
 
-    /// Walks the clusters from the largest down; `enter` says whether to go on to those below.
-    pub fn visit(&self, mut enter: impl FnMut(Cluster<'_>) -> bool) {
-        self.visit_below(0, |cluster, _| enter(cluster));
+    /// The triangles of a cluster, if it has no clusters below.
+    pub fn leaf(&self, cluster: &Cluster) -> Option<&[[[f64; 3]; 3]]> {
+        let triangles = cluster.first as usize..(cluster.first + cluster.count) as usize;
+        (cluster.below == 0).then(|| &self.triangles[triangles])
     }
 
-    /// As [`visit`](Self::visit), of the node `top` and those below it; `enter` gets the number of the cluster's
-    /// first triangle, too.
-    pub fn visit_below(&self, top: usize, mut enter: impl FnMut(Cluster<'_>, usize) -> bool) {
-        let end = self
-            .nodes
-            .get(top)
-            .map_or(0, |node| top + node.below as usize + 1);
+    /// Walks the clusters at and below the node `top` from the largest down, the whole tree from node 0; `enter` returns
+    /// whether to go on to those below.
+    pub fn visit(&self, top: usize, mut enter: impl FnMut(&Cluster) -> bool) {
+        let end = |node: &Cluster| top + node.below as usize + 1;
+        let end = self.nodes.get(top).map_or(0, end);
         let mut at = top;
         while at < end {
             let node = &self.nodes[at];
-            let triangles =
-                &self.triangles[node.first as usize..(node.first + node.count) as usize];
-            let cluster = Cluster {
-                center: node.center,
-                radius: node.radius,
-                area: node.area,
-                area_vector: node.area_vector,
-                leaf: (node.below == 0).then_some(triangles),
-            };
-            let down = enter(cluster, node.first as usize);
+            let down = enter(node);
             at += 1 + if down { 0 } else { node.below as usize };
         }
     }
@@ -120,11 +86,10 @@ impl TriangleTree {
     }
 }
 
-/// A triangle after its middle.
 type Placed = ([f64; 3], [[f64; 3]; 3]);
 
 /// Puts the tree over `triangles`, which are numbers `first` and on, at the end of `nodes`.
-fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Node>) {
+fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Cluster>) {
     let mut area = 0.0;
     let mut area_vector = [0.0; 3];
     let mut moment = [0.0; 3];
@@ -142,11 +107,9 @@ fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Node>) {
         scale(add(low, high), 0.5)
     };
     let corners = triangles.iter().flat_map(|(_, corners)| corners);
-    let radius = corners
-        .map(|&corner| distance(corner, center))
-        .fold(0.0, f64::max);
+    let radius = reach(corners, center);
     let place = nodes.len();
-    nodes.push(Node {
+    nodes.push(Cluster {
         center,
         radius,
         area,
@@ -169,7 +132,7 @@ fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Node>) {
     nodes[place].below = (nodes.len() - place - 1) as u32;
 }
 
-/// The middle of a triangle.
-pub(crate) fn centroid([a, b, c]: [[f64; 3]; 3]) -> [f64; 3] {
-    scale(add(a, add(b, c)), 1.0 / 3.0)
+pub(crate) fn reach<'a>(points: impl IntoIterator<Item = &'a [f64; 3]>, center: [f64; 3]) -> f64 {
+    let distances = points.into_iter().map(|&point| distance(point, center));
+    distances.fold(0.0, f64::max)
 }

@@ -13,7 +13,7 @@ use crate::vector::{cross, dot, norm, subtract};
 
 /// Signed solid angle of a triangle seen from `point`, in steradians: above zero from behind, that is from inside (van
 /// Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30:2, 1983).
-pub(crate) fn solid_angle(corners: [[f64; 3]; 3], point: [f64; 3]) -> f64 {
+fn solid_angle(corners: [[f64; 3]; 3], point: [f64; 3]) -> f64 {
     let [a, b, c] = corners.map(|corner| subtract(corner, point));
     let (la, lb, lc) = (norm(a), norm(b), norm(c));
     let volume = dot(a, cross(b, c));
@@ -21,10 +21,10 @@ pub(crate) fn solid_angle(corners: [[f64; 3]; 3], point: [f64; 3]) -> f64 {
     2.0 * volume.atan2(below)
 }
 
-/// Nearer to a triangle's plane than this share of its distances, a point of the triangle is taken to lie on it.
+/// Nearer to a triangle's plane than this share of its distances, a point counts as on the triangle.
 const ON_TRIANGLE: f64 = 1e-10;
 
-/// Whether a point lies on a triangle, to within rounding.
+/// Whether a point is on a triangle, to within rounding.
 fn is_on(corners: [[f64; 3]; 3], point: [f64; 3]) -> bool {
     let [a, b, c] = corners.map(|corner| subtract(corner, point));
     let (la, lb, lc) = (norm(a), norm(b), norm(c));
@@ -39,11 +39,14 @@ const ROUNDS: [(f64, f64); 2] = [(3.0, 0.1), (10.0, 0.01)];
 
 /// The winding number at `point`, every triangle summed.
 pub(crate) fn exact(tree: &TriangleTree, point: [f64; 3]) -> f64 {
-    tree.triangles()
+    solid_angles(tree.triangles(), point) / (4.0 * PI)
+}
+
+fn solid_angles(triangles: &[[[f64; 3]; 3]], point: [f64; 3]) -> f64 {
+    triangles
         .iter()
         .map(|&corners| solid_angle(corners, point))
-        .sum::<f64>()
-        / (4.0 * PI)
+        .sum()
 }
 
 /// The winding number at `point`, clusters farther than `far` times their radius as dipoles; `near` sees the
@@ -55,19 +58,16 @@ fn fast(
     mut near: impl FnMut(&[[[f64; 3]; 3]]),
 ) -> f64 {
     let mut sum = 0.0;
-    tree.visit(|node| {
+    tree.visit(0, |node| {
         let away = subtract(node.center, point);
         let distance = norm(away);
         if distance > far * node.radius {
             sum += dot(away, node.area_vector) / (distance * distance * distance);
             return false;
         }
-        if let Some(corners) = node.leaf {
-            near(corners);
-            sum += corners
-                .iter()
-                .map(|&corners| solid_angle(corners, point))
-                .sum::<f64>();
+        if let Some(triangles) = tree.leaf(node) {
+            near(triangles);
+            sum += solid_angles(triangles, point);
             return false;
         }
         true
@@ -86,7 +86,7 @@ pub(crate) fn is_inside(tree: &TriangleTree, point: [f64; 3]) -> bool {
     exact(tree, point) > 0.5
 }
 
-/// Whether the surface winds about `point`, either way round; none where the point lies on it.
+/// Whether the surface winds about `point`, either way round; none if the point is on it.
 pub(crate) fn encloses(tree: &TriangleTree, point: [f64; 3]) -> Option<bool> {
     let mut on = false;
     for (far, doubt) in ROUNDS {

@@ -1,4 +1,4 @@
-//! Molecules: atoms as read from PDB and mmCIF files, with what was kept, dropped and altered on the way.
+//! Molecules: atoms as read from PDB and mmCIF files, with a report on atoms kept, dropped and altered.
 //!
 //! # Conventions
 //!
@@ -10,11 +10,10 @@
 //!
 //! # Modules
 //!
-//! - `read`: from a file to atoms. `source` opens, unpacks and detects the format; `pdb` and `mmcif` repair the atoms of
-//!   the wanted models and keep what `pdbtbx` would lose. `assembly` builds an assembly on request. `select` applies the
-//!   `policy` on chains, waters, additives, alternate locations and confidence. The result is a [`Molecule`] with its
-//!   [`ReadReport`].
-//! - `model`: what a molecule is, and what follows from the places of its atoms: residues, chains, surface, unresolved
+//! - `read`: from a file to atoms. `source` opens, unpacks and detects the format; `pdb` and `mmcif` read the atoms of
+//!   the wanted models. `assembly` builds an assembly on request. `select` applies the `policy` on chains, waters,
+//!   additives, alternate locations and confidence. The result is a [`Molecule`] with its [`ReadReport`].
+//! - `model`: molecules, and quantities that follow from the places of atoms: residues, chains, surface, unresolved
 //!   segments.
 //! - `chemistry`: tables of names, elements, radii, charges, contact types, chi angles and rotamers.
 //! - `write`: molecules and complexes as PDB or mmCIF.

@@ -1,9 +1,11 @@
 //! Binary trees of boxes over things at places in N dimensions, halved at the median of the longest side.
 
-/// Things in a leaf at most, if nothing asks for other leaves.
+use crate::vector::bounds;
+
+/// Things in a leaf at most by default.
 pub(crate) const LEAF: usize = 8;
 
-/// Some of the things: the box of their places, and what is known of all of them.
+/// Some of the things: the box of their places, and a value computed from all of them.
 #[derive(Debug)]
 pub(crate) struct BoxNode<K, const N: usize = 3> {
     pub low: [f64; N],
@@ -42,14 +44,7 @@ fn build<T, K, const N: usize>(
     known: &impl Fn(&[T]) -> K,
     nodes: &mut Vec<BoxNode<K, N>>,
 ) {
-    let (mut low, mut high) = ([f64::INFINITY; N], [f64::NEG_INFINITY; N]);
-    for thing in things.iter() {
-        let (position, _) = place(thing);
-        for axis in 0..N {
-            low[axis] = low[axis].min(position[axis]);
-            high[axis] = high[axis].max(position[axis]);
-        }
-    }
+    let (low, high) = bounds(things.iter().map(|thing| place(thing).0));
     let at = nodes.len();
     nodes.push(BoxNode {
         low,

@@ -1,11 +1,11 @@
 //! Points that are known beforehand, by cubic cell.
 
-use super::Bins;
+use crate::vector::bounds;
 
 /// Most cells of a list: where points are more widely spaced, its cells grow.
 const MAX_CELLS: f64 = 4e6;
 
-/// A point of a list, and what belongs to it.
+/// A point of a list, with its item.
 #[derive(Clone, Copy, Debug)]
 pub struct Member<T> {
     /// Coordinates, in the unit of the list.
@@ -28,12 +28,8 @@ impl<T> CellList<T> {
     ///
     /// The grid of cells spans the points and the origin, so points are best given relative to their middle.
     pub fn new(members: Vec<Member<T>>, edge: f64) -> Self {
-        let ends = |pick: fn(f64, f64) -> f64| {
-            members.iter().fold([0.0; 3], |end: [f64; 3], member| {
-                std::array::from_fn(|axis| pick(end[axis], member.position[axis]))
-            })
-        };
-        let (low, high) = (ends(f64::min), ends(f64::max));
+        let positions = members.iter().map(|member| member.position);
+        let (low, high) = bounds(std::iter::once([0.0; 3]).chain(positions));
         let count =
             |edge: f64| [0, 1, 2].map(|axis| ((high[axis] - low[axis]) / edge).floor() + 1.0);
         let mut edge = edge;
@@ -77,6 +73,39 @@ impl<T> CellList<T> {
                 }
             }
         }
+    }
+}
+
+/// Items by the number of their bin, in one piece of memory.
+#[derive(Clone, Debug)]
+pub struct Bins<T> {
+    /// Bin after bin; within a bin in the order given.
+    items: Vec<T>,
+    /// [bin]: place in `items` of the bin's first item; the last entry is their number.
+    starts: Vec<u32>,
+}
+
+impl<T> Bins<T> {
+    /// Sorts items into bins 0 to `count` - 1; the items of a bin keep their order.
+    ///
+    /// # Panics
+    /// If `bin_of` gives a number that is not below `count`.
+    pub fn new(count: usize, mut items: Vec<T>, bin_of: impl Fn(&T) -> usize) -> Self {
+        items.sort_by_key(&bin_of);
+        let mut starts = vec![0u32; count + 1];
+        for item in &items {
+            starts[bin_of(item) + 1] += 1;
+        }
+        for bin in 1..starts.len() {
+            starts[bin] += starts[bin - 1];
+        }
+        Self { items, starts }
+    }
+
+    /// The items of the bins from `first` to `last` inclusive.
+    #[inline]
+    pub fn run(&self, first: usize, last: usize) -> &[T] {
+        &self.items[self.starts[first] as usize..self.starts[last + 1] as usize]
     }
 }
 
@@ -129,5 +158,13 @@ mod tests {
     fn a_list_of_no_points_has_no_neighbours() {
         let list = CellList::<usize>::new(Vec::new(), 4.0);
         list.visit_within([0.0; 3], 1e9, |_, _| panic!("nothing to visit"));
+    }
+
+    #[test]
+    fn items_of_a_bin_keep_their_order() {
+        let bins = Bins::new(4, vec![31, 10, 30, 11], |item| item / 10);
+        assert!(bins.run(0, 0).is_empty() && bins.run(2, 2).is_empty());
+        assert_eq!(bins.run(3, 3), [31, 30]);
+        assert_eq!(bins.run(0, 3), [10, 11, 31, 30]);
     }
 }

@@ -2,7 +2,28 @@
 
 use std::collections::HashMap;
 
-use super::cell::{self, Cell, cell_of};
+/// Numbers of a cell along the three axes.
+pub(crate) type Cell = [i64; 3];
+
+/// Largest number of a cell along an axis, so that every cell has neighbours on both sides.
+const LAST: f64 = (1i64 << 60) as f64;
+
+/// The cell in which a point lies; `edge` > 0 is in the unit of the point, and cell 0 begins at 0.
+pub(crate) fn cell_of(point: [f64; 3], edge: f64) -> Cell {
+    point.map(|x| (x / edge).floor().clamp(-LAST, LAST) as i64)
+}
+
+/// A cell and the 26 cells that touch it, by rising x, then y, then z.
+pub(crate) fn around([x, y, z]: Cell) -> impl Iterator<Item = Cell> {
+    (0..27).map(move |at| [x + at / 9 - 1, y + at / 3 % 3 - 1, z + at % 3 - 1])
+}
+
+/// All cells from `first` to `last` inclusive on each axis, by rising x, then y, then z.
+fn between(first: Cell, last: Cell) -> impl Iterator<Item = Cell> {
+    (first[0]..=last[0]).flat_map(move |x| {
+        (first[1]..=last[1]).flat_map(move |y| (first[2]..=last[2]).map(move |z| [x, y, z]))
+    })
+}
 
 /// Points in each cubic cell of space. Lengths are in one unit throughout.
 #[derive(Clone, Debug)]
@@ -22,7 +43,7 @@ impl<T> SpatialHash<T> {
     /// An empty hash whose cells are counted from `origin`, with room for items in `capacity` cells.
     ///
     /// An origin near the points keeps their digits where they all lie far from 0.
-    pub fn with_origin(origin: [f64; 3], edge: f64, capacity: usize) -> Self {
+    pub(crate) fn with_origin(origin: [f64; 3], edge: f64, capacity: usize) -> Self {
         Self {
             origin,
             edge,
@@ -35,8 +56,7 @@ impl<T> SpatialHash<T> {
         cell_of(from_origin, self.edge)
     }
 
-    /// The items of the cell of a point, to add to.
-    pub fn members_at(&mut self, point: [f64; 3]) -> &mut Vec<T> {
+    fn members_at(&mut self, point: [f64; 3]) -> &mut Vec<T> {
         self.members.entry(self.cell(point, 0.0)).or_default()
     }
 
@@ -47,16 +67,14 @@ impl<T> SpatialHash<T> {
 
     /// The items of a point's cell and of the 26 about it: all within one edge, among others up to 3.5 edges away.
     pub fn around(&self, point: [f64; 3]) -> impl Iterator<Item = &T> {
-        self.of_cells(cell::around(self.cell(point, 0.0)))
+        self.of_cells(around(self.cell(point, 0.0)))
     }
 
     /// The items of all cells that a cube of half edge `reach` about a point touches: all that lie within reach, among
     /// others.
     pub fn touching(&self, point: [f64; 3], reach: f64) -> impl Iterator<Item = &T> {
-        self.of_cells(cell::between(
-            self.cell(point, -reach),
-            self.cell(point, reach),
-        ))
+        let [first, last] = [-reach, reach].map(|shift| self.cell(point, shift));
+        self.of_cells(between(first, last))
     }
 
     fn of_cells(&self, cells: impl Iterator<Item = Cell>) -> impl Iterator<Item = &T> {
@@ -71,7 +89,7 @@ impl SpatialHash<usize> {
     }
 
     /// The indices of points, in cells of `edge` > 0: of the first `max` points of each cell.
-    pub fn of_crowded_points(
+    pub(crate) fn of_crowded_points(
         points: impl IntoIterator<Item = [f64; 3]>,
         edge: f64,
         max: usize,
@@ -129,5 +147,19 @@ mod tests {
     fn a_crowded_cell_keeps_its_first_points() {
         let hash = SpatialHash::of_crowded_points([[0.5; 3]; 5], 1.0, 2);
         assert!(hash.around([0.5; 3]).eq(&[0, 1]));
+    }
+
+    #[test]
+    fn the_cells_around_one_are_those_between_its_neighbours() {
+        let near: Vec<Cell> = around([4, -1, 0]).collect();
+        assert_eq!(near, between([3, -2, -1], [5, 0, 1]).collect::<Vec<_>>());
+        assert_eq!(near[13], [4, -1, 0]);
+    }
+
+    #[test]
+    fn cells_are_half_open_and_never_overflow() {
+        assert_eq!(cell_of([-0.1, 0.0, 2.0], 2.0), [-1, 0, 1]);
+        let far = cell_of([1e300, -1e300, 0.0], 1e-9);
+        assert_eq!(around(far).count(), 27);
     }
 }

@@ -18,7 +18,7 @@ pub struct Node {
 }
 
 impl Node {
-    /// Where the node lies, 0 to 1.
+    /// Place of the node, 0 to 1.
     pub fn x(&self) -> f64 {
         if self.at_start {
             self.from_end

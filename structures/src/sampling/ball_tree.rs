@@ -1,8 +1,8 @@
 //! A tree of boxes over balls that answers how far a point is from their union.
 
-use crate::ball::Ball;
+use crate::ball::{Ball, largest_first};
 use crate::neighbours::box_tree::{BoxNode, LEAF, box_tree};
-use crate::vector::{distance, dot};
+use crate::vector::{bounds, distance, dot};
 
 /// A tree over balls of boxes in four dimensions, of their centres and radii.
 #[derive(Debug)]
@@ -11,8 +11,7 @@ pub struct BallTree {
     nodes: Vec<Node>,
 }
 
-/// Some balls, with the box around them.
-type Node = BoxNode<[[f64; 3]; 2], 4>;
+type Node = BoxNode<([f64; 3], [f64; 3]), 4>;
 
 /// No ball of a node is nearer than this to `point`, in the sense of [`BallTree::distance`].
 fn bound(node: &Node, point: [f64; 3]) -> f64 {
@@ -25,7 +24,7 @@ fn bound(node: &Node, point: [f64; 3]) -> f64 {
         dot(beyond, beyond)
     };
     let centers = beyond(&node.low, &node.high).sqrt() - node.high[3];
-    let [low, high] = &node.known;
+    let (low, high) = &node.known;
     let balls = beyond(low, high);
     if balls > 0.0 {
         centers.max(balls.sqrt())
@@ -43,14 +42,7 @@ impl BallTree {
             ([x, y, z, ball.radius], *number)
         };
         let nodes = box_tree(&mut numbered, LEAF, place, |balls| {
-            let mut around = [[f64::INFINITY; 3], [f64::NEG_INFINITY; 3]];
-            for (_, Ball { center, radius }) in balls {
-                for axis in 0..3 {
-                    around[0][axis] = around[0][axis].min(center[axis] - radius);
-                    around[1][axis] = around[1][axis].max(center[axis] + radius);
-                }
-            }
-            around
+            bounds(balls.iter().flat_map(|(_, ball)| ball.corners()))
         });
         let balls = numbered.into_iter().map(|(_, ball)| ball).collect();
         Self { balls, nodes }
@@ -64,7 +56,7 @@ impl BallTree {
         self.distance_within(point, enough, f64::INFINITY)
     }
 
-    /// As [`Self::distance`], never more than `at_most`, which spares the search for what lies farther.
+    /// As [`Self::distance`], never more than `at_most`, which spares the search of farther balls.
     pub fn distance_within(&self, point: [f64; 3], enough: f64, at_most: f64) -> f64 {
         let mut best = at_most;
         if let Some(root) = self.nodes.first() {
@@ -82,11 +74,7 @@ impl BallTree {
     /// the lesser centre, so that of several equal in all but rounding one is always held by none.
     pub fn holds_before(&self, ball: &Ball) -> bool {
         !self.nodes.is_empty()
-            && self.search_holder(0, ball, |other| {
-                let order = (other.radius.total_cmp(&ball.radius).reverse())
-                    .then_with(|| compare(other.center, ball.center));
-                order.is_lt()
-            })
+            && self.search_holder(0, ball, |other| largest_first(other, ball).is_lt())
     }
 
     fn search_holder(&self, at: usize, ball: &Ball, counts: impl Fn(&Ball) -> bool + Copy) -> bool {
@@ -133,13 +121,6 @@ impl BallTree {
     }
 }
 
-/// Order of points by x, then y, then z.
-fn compare(a: [f64; 3], b: [f64; 3]) -> std::cmp::Ordering {
-    (a[0].total_cmp(&b[0]))
-        .then(a[1].total_cmp(&b[1]))
-        .then(a[2].total_cmp(&b[2]))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -148,10 +129,10 @@ mod tests {
         (1..=count)
             .map(|i| {
                 let part = |step: f64| (f64::from(i) * step).fract();
-                Ball {
-                    center: [part(0.8191), part(0.6710), part(0.5497)],
-                    radius: 0.02 + 0.3 * part(0.4503).powi(3),
-                }
+                Ball::new(
+                    [part(0.8191), part(0.6710), part(0.5497)],
+                    0.02 + 0.3 * part(0.4503).powi(3),
+                )
             })
             .collect()
     }
@@ -165,7 +146,8 @@ mod tests {
         for ball in &balls {
             let larger = balls.iter().any(|other| {
                 let first = other.radius > ball.radius
-                    || other.radius == ball.radius && compare(other.center, ball.center).is_lt();
+                    || other.radius == ball.radius
+                        && crate::vector::compare(other.center, ball.center).is_lt();
                 first && other.holds(ball)
             });
             assert_eq!(tree.holds_before(ball), larger);

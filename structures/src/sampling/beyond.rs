@@ -78,10 +78,7 @@ mod tests {
 
     #[test]
     fn what_of_balls_lies_beyond_a_box() {
-        let ball = |x: f64, radius: f64| Ball {
-            center: [x, 0.0, 0.0],
-            radius,
-        };
+        let ball = |x: f64, radius: f64| Ball::new([x, 0.0, 0.0], radius);
         let sphere = |radius: f64| 4.0 / 3.0 * std::f64::consts::PI * radius * radius * radius;
         assert_eq!(volume_beyond(&[ball(0.0, 1.0)], -1.0, 1.0, 0.1), 0.0);
         // A ball about the box, once and twice; and half of one, beside the box.

@@ -3,14 +3,12 @@
 //! Covering every inside node is not enough (see [`super::decomposition`]), and a needle or a shell may have none.
 //! Samples of the surface are spaced by a tenth of eps at most. A sample farther than nine tenths of eps from all
 //! balls gets the ball of the deepest point that lies within that distance under it. Then inside points on a grid of
-//! half the spacing that are farther than eps get balls of their own.
+//! half the spacing that are farther than eps get balls, too.
 
 use rayon::prelude::*;
 
 use crate::ball::Ball;
-use crate::mesh::Probe;
-use crate::mesh::Solid;
-use crate::mesh::SurfaceSample;
+use crate::mesh::{Probe, Solid, SurfaceSample};
 use crate::neighbours::SpatialHash;
 use crate::sampling::ball_tree::BallTree;
 use crate::sampling::grid::DepthField;
@@ -19,7 +17,7 @@ use crate::vector::{along, distance};
 /// Distance between a surface point and the nearest sample, as a share of eps.
 pub const SAMPLE_SPACING: f64 = 0.1;
 
-/// What was added.
+/// Counts of the balls added.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Covering {
     /// Balls added under the surface.
@@ -81,10 +79,7 @@ pub fn cover(solid: &Solid, field: &DepthField, balls: &mut Vec<Ball>) -> Coveri
         if added.is_near(point, epsilon) {
             continue;
         }
-        let ball = Ball {
-            center: point,
-            radius: solid.distance(point),
-        };
+        let ball = Ball::new(point, solid.distance(point));
         if ball.radius > 0.0 {
             added.push(ball);
             balls.push(ball);

@@ -1,22 +1,21 @@
-//! Spherical decomposition: B&I, Algorithm 1, with what its listing gets wrong put right.
+//! Spherical decomposition: B&I, Algorithm 1, with corrections of its listing.
 //!
 //! 1. **A1.** Nodes inside are taken by falling priority. Each gives the ball of its distance to the surface and
 //!    marks the nodes in it as covered. It removes from the queue the nodes x' with r(x') <= r(x) and |x - x'| -
 //!    (r(x) - r(x')) <= mu r(x'). This ends when every inside node is covered. Then [`super::cover`] adds balls until
 //!    no point of the surface is farther than eps from A1.
 //! 2. **A2** is A1 grown by eps.
-//! 3. **A3** is A2 without the balls whose original lies in the grown ball of one that is kept, the largest first.
+//! 3. **A3** is A2 without the balls whose original is in the grown ball of one that is kept, the largest first.
 //!
-//! What differs from the listing, and why:
+//! Differences from the listing, with reasons:
 //!
 //! - *r(x') <= r(x).* The listing takes |r(x) - r(x')|, by which a small ball strikes a larger one that contains it.
 //! - *The queue cannot run dry too early.* With the above and mu <= 1, a struck node is covered:
 //!   |x - x'| <= r(x) - (1 - mu) r(x').
-//! - *One ball, not a union.* The paper's eq. 57 drops a ball that lies in the union of the other grown balls. Its
-//!   listing, its proof of Proposition 3 and this code drop one that lies in a single other: a stricter test, which
-//!   keeps more balls.
-//! - *Kept, and the largest first.* The listing drops a ball that lies in any grown ball, even in its own. It drops
-//!   chains of balls of which each lies in the next, so that nothing need be left near the first.
+//! - *One ball, not a union.* The paper's eq. 57 drops a ball in the union of the other grown balls. Its listing, its
+//!   proof of Proposition 3 and this code drop one in a single other: a stricter test, which keeps more balls.
+//! - *Kept, and the largest first.* The listing drops a ball in any grown ball, even in its own, and chains of balls
+//!   each of which is in the next, so that nothing need be left near the first.
 //! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false where the node nearest
 //!   to x lies outside S. Under a flat face just below a plane of nodes X ends sqrt(2) eps away. Its Propositions 1
 //!   to 3 rest on it.
@@ -27,8 +26,7 @@
 use crate::ball::Ball;
 use crate::mesh::Solid;
 use crate::neighbours::SpatialHash;
-use crate::sampling::cover;
-use crate::sampling::cover::Covering;
+use crate::sampling::cover::{self, Covering};
 use crate::sampling::grid::DepthField;
 use crate::sampling::sample::SampleError;
 use crate::sampling::skeletal_density::{Priority, priorities};
@@ -60,7 +58,7 @@ pub struct Decomposition {
     pub a2: Vec<Ball>,
     /// `a2` without those that others make redundant.
     pub a3: Vec<Ball>,
-    /// What was added to `a1` after the nodes were covered.
+    /// Balls added to `a1` after the nodes were covered.
     pub covering: Covering,
 }
 
@@ -105,7 +103,7 @@ pub(crate) fn decompose_in_order(
     })
 }
 
-/// Step 1 on the grid of any depth, the largest balls first: every node inside lies in one of the balls, and no ball
+/// Step 1 on the grid of any depth, the largest balls first: every node inside is in one of the balls, and no ball
 /// reaches out of the solid.
 pub fn cover_nodes(field: &DepthField, mu: f64) -> Vec<Ball> {
     let nodes = field.inside();
@@ -113,7 +111,6 @@ pub fn cover_nodes(field: &DepthField, mu: f64) -> Vec<Ball> {
     take_nodes(field, &nodes, &radii, mu)
 }
 
-/// Step 1 on the grid.
 fn take_nodes(field: &DepthField, nodes: &[usize], priorities: &[f64], mu: f64) -> Vec<Ball> {
     let mut queue: Vec<usize> = (0..nodes.len()).collect();
     // Ties: the larger ball, then the lower index, so that the order does not depend on the sort.
@@ -136,10 +133,7 @@ fn take_nodes(field: &DepthField, nodes: &[usize], priorities: &[f64], mu: f64) 
         if struck[node] {
             continue;
         }
-        let ball = Ball {
-            center: field.grid.node(node),
-            radius: field.depth[node],
-        };
+        let ball = Ball::new(field.grid.node(node), field.depth[node]);
         field
             .grid
             .visit_ball(ball.center, ball.radius, |other, squared| {
@@ -233,17 +227,11 @@ mod tests {
     #[test]
     fn what_is_dropped_lies_in_a_ball_that_is_kept() {
         let epsilon = 0.1;
-        let one = [Ball {
-            center: [0.0; 3],
-            radius: 1.0,
-        }];
+        let one = [Ball::new([0.0; 3], 1.0)];
         assert_eq!(reduce(&one, epsilon), [0]);
         let chain: Vec<Ball> = (0..20)
             .map(|i| f64::from(i) * 0.08)
-            .map(|x| Ball {
-                center: [x, 0.0, 0.0],
-                radius: 1.0 + 0.01 * x,
-            })
+            .map(|x| Ball::new([x, 0.0, 0.0], 1.0 + 0.01 * x))
             .collect();
         for pair in chain.windows(2) {
             assert!(pair[1].grown(epsilon).holds(&pair[0]));
@@ -252,10 +240,7 @@ mod tests {
             // Above and below the size from which balls are kept separate.
             let balls: Vec<Ball> = chain
                 .iter()
-                .map(|ball| Ball {
-                    center: ball.center,
-                    radius: scale * ball.radius,
-                })
+                .map(|ball| Ball::new(ball.center, scale * ball.radius))
                 .collect();
             let kept = reduce(&balls, epsilon);
             assert!(kept.len() < balls.len());

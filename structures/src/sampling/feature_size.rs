@@ -11,6 +11,7 @@ use rayon::prelude::*;
 
 use crate::mesh::Solid;
 use crate::sampling::grid::DepthField;
+use crate::vector::{along, norm, subtract};
 
 /// Number of points of the surface that are sampled, about.
 const SAMPLES: usize = 1500;
@@ -45,13 +46,13 @@ pub fn feature_size(solid: &Solid, field: &DepthField) -> f64 {
 /// Radius of the largest ball inside that touches the surface at the point nearest to `inside`, no larger than `most`.
 fn touching_radius(solid: &Solid, inside: [f64; 3], most: f64) -> f64 {
     let foot = solid.nearest(inside);
-    let step = [0, 1, 2].map(|axis| inside[axis] - foot[axis]);
-    let depth = step.iter().map(|x| x * x).sum::<f64>().sqrt();
+    let step = subtract(inside, foot);
+    let depth = norm(step);
     if depth <= 0.0 {
         return 0.0;
     }
     let fits = |radius: f64| {
-        let center = [0, 1, 2].map(|axis| foot[axis] + radius / depth * step[axis]);
+        let center = along(foot, radius / depth, step);
         // Past a thin wall the surface is far, too.
         solid.distance(center) >= TOUCHING * radius && solid.is_inside(center)
     };

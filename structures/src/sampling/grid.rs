@@ -141,41 +141,27 @@ pub struct DepthField {
 impl DepthField {
     /// Measures the depth at every node, rows in parallel.
     ///
-    /// Along a row the last distance plus the spacing bounds the next one. In a closed mesh two neighbours lie on one
-    /// side when their distances together exceed the spacing, so winding numbers are taken near the surface only.
+    /// Along a row the last distance plus the spacing bounds the next one. In a closed mesh two neighbours are on one
+    /// side if their distances together exceed the spacing, so winding numbers are taken near the surface only.
     pub fn new(solid: &Solid, grid: Grid) -> Self {
-        let n = grid.per_axis();
         let h = grid.spacing();
         let closed = solid.mesh().is_closed();
-        let mut depth = vec![0.0; grid.nodes()];
-        depth
-            .par_chunks_mut(n)
-            .enumerate()
-            .for_each(|(row, depths)| {
-                let mut last: Option<f64> = None;
-                for (x, depth) in depths.iter_mut().enumerate() {
-                    let point = grid.node(row * n + x);
-                    let distance = match last {
-                        Some(last) => solid.distance_within(point, last.abs() + h),
-                        None => solid.distance(point),
-                    };
-                    let inside = match last {
-                        Some(last) if closed && last.abs() + distance > h * (1.0 + 1e-9) => {
-                            last > 0.0
-                        }
-                        _ => solid.is_inside(point),
-                    };
-                    *depth = match distance {
-                        ..ON_SURFACE => 0.0,
-                        _ if inside => distance,
-                        _ => -distance,
-                    };
-                    // On the surface the sign says nothing about the next node; zero plus any distance up to h asks
-                    // again.
-                    last = Some(*depth);
-                }
-            });
-        Self { grid, depth }
+        Self::by_rows(grid, |point, last: Option<f64>| {
+            let distance = match last {
+                Some(last) => solid.distance_within(point, last.abs() + h),
+                None => solid.distance(point),
+            };
+            // On the surface the sign says nothing about the next node; zero plus any distance up to h asks again.
+            let inside = match last {
+                Some(last) if closed && last.abs() + distance > h * (1.0 + 1e-9) => last > 0.0,
+                _ => solid.is_inside(point),
+            };
+            match distance {
+                ..ON_SURFACE => 0.0,
+                _ if inside => distance,
+                _ => -distance,
+            }
+        })
     }
 
     /// The depth that a function gives, rows in parallel.
@@ -183,20 +169,26 @@ impl DepthField {
     /// `depth_within(point, most)` is the depth at a point, or `most` if it is more than that: the depths of two points
     /// differ by the length between them at most, so that each bounds the next one.
     pub fn of_depth(grid: Grid, depth_within: impl Fn([f64; 3], f64) -> f64 + Sync) -> Self {
-        let n = grid.per_axis();
         let h = grid.spacing();
         let rounding = grid.half() * 1e-12;
+        Self::by_rows(grid, |point, last: Option<f64>| {
+            let most = last.map_or(f64::INFINITY, |last| last + h + rounding);
+            depth_within(point, most)
+        })
+    }
+
+    /// Depths by the point of each node and the depth of the one before it in its row, rows in parallel.
+    fn by_rows(grid: Grid, depth_at: impl Fn([f64; 3], Option<f64>) -> f64 + Sync) -> Self {
+        let n = grid.per_axis();
         let mut depth = vec![0.0; grid.nodes()];
-        depth
-            .par_chunks_mut(n)
-            .enumerate()
-            .for_each(|(row, depths)| {
-                let mut most = f64::INFINITY;
-                for (x, depth) in depths.iter_mut().enumerate() {
-                    *depth = depth_within(grid.node(row * n + x), most);
-                    most = *depth + h + rounding;
-                }
-            });
+        let rows = depth.par_chunks_mut(n).enumerate();
+        rows.for_each(|(row, depths)| {
+            let mut last = None;
+            for (x, depth) in depths.iter_mut().enumerate() {
+                *depth = depth_at(grid.node(row * n + x), last);
+                last = Some(*depth);
+            }
+        });
         Self { grid, depth }
     }
 

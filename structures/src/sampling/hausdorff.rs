@@ -9,7 +9,7 @@
 //!
 //! *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid. It is taken over the same
 //! grid's points in the balls, and over the point of each ball's sphere on the far side of the surface point nearest to
-//! its centre. Where that leaves room, the whole sphere is searched (`outward`). A ball of radius R at depth d reaches
+//! its centre. If that leaves room, the whole sphere is searched (`outward`). A ball of radius R at depth d reaches
 //! no farther out than R - d, which is reported as the bound.
 //!
 //! Solids, not their boundaries, are compared, as in the paper's propositions.
@@ -19,8 +19,7 @@ use std::sync::atomic::{AtomicU64, Ordering};
 use rayon::prelude::*;
 
 use crate::ball::Ball;
-use crate::mesh::Solid;
-use crate::mesh::is_beside;
+use crate::mesh::{Solid, is_beside};
 use crate::sampling::ball_tree::BallTree;
 use crate::sampling::beyond::volume_beyond;
 use crate::sampling::cover::SAMPLE_SPACING;
@@ -55,12 +54,12 @@ pub struct Fit {
     pub nodes_missed: usize,
 }
 
-/// A solid prepared for judging sets of balls.
+/// A solid with data for measuring sets of balls.
 pub struct HausdorffMeter<'a> {
     solid: &'a Solid,
     field: &'a DepthField,
     fine: FineGrid,
-    /// For each row of the fine grid along x, a bit a point: inside the solid.
+    /// For each row of the fine grid along x, one bit per point: inside the solid.
     inside: Vec<u64>,
 }
 
@@ -121,7 +120,7 @@ impl<'a> HausdorffMeter<'a> {
             .par_chunks_mut(fine.words)
             .enumerate()
             .for_each(|(row, words)| {
-                // Two fine points stand about each node; the outermost two on either side stand about none.
+                // Two fine points are about each node; the outermost two on either side are about none.
                 let node_of =
                     |number: usize| (number / 2).checked_sub(1).filter(|&number| number < n);
                 let (y, z) = (node_of(row % fine.per_axis), node_of(row / fine.per_axis));
@@ -149,11 +148,8 @@ impl<'a> HausdorffMeter<'a> {
     /// Volume of the solid as the fine grid counts it, in the solid's unit cubed, or the grid itself where the fine one
     /// has no point inside, as of a thin plate.
     pub fn volume(&self) -> f64 {
-        let count: u64 = self
-            .inside
-            .iter()
-            .map(|word| u64::from(word.count_ones()))
-            .sum();
+        let ones = self.inside.iter().map(|word| u64::from(word.count_ones()));
+        let count: u64 = ones.sum();
         match count {
             0 => self.field.inside().len() as f64 * self.field.grid.spacing().powi(3),
             _ => count as f64 * self.fine.step.powi(3),
@@ -165,35 +161,27 @@ impl<'a> HausdorffMeter<'a> {
         let tree = BallTree::new(balls);
         let covered = self.covered(balls);
         let cell = self.fine.step.powi(3);
-        let (missed, outside, inner, outer) = (0..self.fine.rows())
-            .into_par_iter()
-            .map(|row| self.measure_row(row, &covered, &tree))
-            .reduce(
-                || (0, 0, 0.0, 0.0),
-                |a, b| (a.0 + b.0, a.1 + b.1, f64::max(a.2, b.2), f64::max(a.3, b.3)),
-            );
+        let rows = (0..self.fine.rows()).into_par_iter();
+        let rows = rows.map(|row| self.measure_row(row, &covered, &tree));
+        let (missed, outside, inner, outer) = rows.reduce(
+            || (0, 0, 0.0, 0.0),
+            |a, b| (a.0 + b.0, a.1 + b.1, f64::max(a.2, b.2), f64::max(a.3, b.3)),
+        );
         let inward = f64::max(inner, self.surface_distance(&tree));
         let touching: Vec<(f64, f64)> = balls.par_iter().map(|ball| self.outward(ball)).collect();
-        let (seen, bound) = touching.iter().fold((outer, 0.0), |a, b| {
-            (f64::max(a.0, b.0), f64::max(a.1, b.1))
-        });
-        let bounds = touching.iter().map(|(_, bound)| *bound);
-        let bounded: Vec<(f64, Ball)> = bounds.zip(balls.iter().copied()).collect();
+        let seen = touching.iter().map(|(seen, _)| *seen).fold(outer, f64::max);
+        let bounds = || touching.iter().map(|(_, bound)| *bound);
+        let bound = bounds().fold(0.0, f64::max);
+        let bounded: Vec<(f64, Ball)> = bounds().zip(balls.iter().copied()).collect();
         let grid = self.field.grid;
-        let seen = farthest(
-            self.solid,
-            bounded,
-            seen,
-            OUTWARD_TOLERANCE * grid.epsilon(),
-        );
+        let tolerance = OUTWARD_TOLERANCE * grid.epsilon();
+        let seen = farthest(self.solid, bounded, seen, tolerance);
         let last = self.fine.coordinate(self.fine.per_axis - 1) + 0.5 * self.fine.step;
         let beyond = volume_beyond(balls, -last, last, self.fine.step);
-        let nodes_missed = (0..grid.nodes())
-            .into_par_iter()
-            .filter(|&node| {
-                self.field.depth[node] > 0.0 && tree.distance(grid.node(node), 0.0) > 1e-12
-            })
-            .count();
+        let is_missed = |&node: &usize| {
+            self.field.depth[node] > 0.0 && tree.distance(grid.node(node), 0.0) > 1e-12
+        };
+        let nodes_missed = (0..grid.nodes()).into_par_iter().filter(is_missed).count();
         Fit {
             hausdorff_inward: inward,
             inward_bound: self.inward_bound(&tree, inward),
@@ -242,11 +230,8 @@ impl<'a> HausdorffMeter<'a> {
     ) -> (usize, usize, f64, f64) {
         let words = row * self.fine.words..(row + 1) * self.fine.words;
         let (mut missed, mut outside, mut inner, mut outer) = (0, 0, 0.0f64, 0.0f64);
-        for (word, (&inside, &covered)) in self.inside[words.clone()]
-            .iter()
-            .zip(&covered[words])
-            .enumerate()
-        {
+        let own = self.inside[words.clone()].iter().zip(&covered[words]);
+        for (word, (&inside, &covered)) in own.enumerate() {
             let mut differ = inside ^ covered;
             while differ != 0 {
                 let bit = differ.trailing_zeros() as usize;
@@ -264,7 +249,6 @@ impl<'a> HausdorffMeter<'a> {
         (missed, outside, inner, outer)
     }
 
-    /// Farthest distance of a surface sample from the balls.
     fn surface_distance(&self, tree: &BallTree) -> f64 {
         let epsilon = self.field.grid.epsilon();
         let spacing = epsilon * SAMPLE_SPACING;
@@ -300,9 +284,11 @@ impl<'a> HausdorffMeter<'a> {
             return None;
         }
         // A set that covers the solid is shown to.
-        let goal = match measured > 0.0 {
-            true => measured + INWARD_TOLERANCE * self.field.grid.epsilon(),
-            false => 0.0,
+        let slack = INWARD_TOLERANCE * self.field.grid.epsilon();
+        let goal = if measured > 0.0 {
+            measured + slack
+        } else {
+            0.0
         };
         let fine = self.fine;
         let cells = fine.per_axis - 4;
@@ -345,11 +331,8 @@ impl<'a> HausdorffMeter<'a> {
         }
         let quarter = 0.5 * half;
         (0..8u32).fold(goal, |goal, corner| {
-            let shift = |axis: usize| match corner >> axis & 1 {
-                1 => quarter,
-                _ => -quarter,
-            };
-            let part = [0, 1, 2].map(|axis| middle[axis] + shift(axis));
+            let signs = [0, 1, 2].map(|axis| 2.0 * f64::from(corner >> axis & 1) - 1.0);
+            let part = along(middle, quarter, signs);
             self.beyond(tree, part, quarter, goal, halvings - 1)
         })
     }
@@ -359,23 +342,14 @@ impl<'a> HausdorffMeter<'a> {
         let nearest = self.solid.nearest(ball.center);
         let away = distance(nearest, ball.center);
         let inside = self.solid.is_inside(ball.center);
-        let bound = if inside {
-            ball.radius - away
-        } else {
-            ball.radius + away
-        };
+        let sign = if inside { 1.0 } else { -1.0 };
+        let bound = ball.radius - sign * away;
         if bound <= 0.0 || away == 0.0 {
             return (0.0, bound);
         }
         let outward = subtract(nearest, ball.center);
-        let sign = if inside { 1.0 } else { -1.0 };
         let point = along(ball.center, sign * ball.radius / away, outward);
-        let seen = if self.solid.is_inside(point) {
-            0.0
-        } else {
-            self.solid.distance(point)
-        };
-        (seen, bound)
+        ((-self.solid.depth(point)).max(0.0), bound)
     }
 }
 
@@ -406,8 +380,6 @@ fn fill(row: &mut [u64], from: usize, to: usize) {
         return;
     }
     row[first] |= head;
-    for word in &mut row[first + 1..last] {
-        *word = u64::MAX;
-    }
+    row[first + 1..last].fill(u64::MAX);
     row[last] |= tail;
 }

@@ -1,4 +1,4 @@
-//! Balls of one radius on a lattice: a solid as a smooth density, no finer than whoever looks at it can tell.
+//! Balls of one radius on a lattice: a solid as a smooth density of limited resolution.
 //!
 //! Cells of k x k x k nodes tile the grid, evenly about its middle. Every cell with nodes inside the solid gives one
 //! ball, at the mean of these nodes, so that a cell which the surface cuts has its ball where its share of the solid
@@ -34,10 +34,7 @@ pub fn lattice(field: &DepthField, per_cell: usize, radius: f64) -> Vec<Ball> {
     }
     sums.into_iter()
         .filter(|(_, count)| *count > 0)
-        .map(|(sum, count)| Ball {
-            center: sum.map(|value| value / count as f64),
-            radius,
-        })
+        .map(|(sum, count)| Ball::new(sum.map(|value| value / count as f64), radius))
         .collect()
 }
 

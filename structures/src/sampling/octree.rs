@@ -24,14 +24,8 @@ fn descend(solid: &Solid, field: &DepthField, corner: [usize; 3], side: usize) -
     }
     if side == 1 {
         let node = grid.index(corner);
-        return if field.depth[node] > 0.0 {
-            vec![Ball {
-                center: grid.node(node),
-                radius: grid.epsilon(),
-            }]
-        } else {
-            Vec::new()
-        };
+        let ball = Ball::new(grid.node(node), grid.epsilon());
+        return Vec::from_iter((field.depth[node] > 0.0).then_some(ball));
     }
     // Beyond the last node there is nothing inside; a cell that reaches there is cut.
     if corner.iter().all(|&number| number + side <= n) {

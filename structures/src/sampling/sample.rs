@@ -1,4 +1,4 @@
-//! A solid sampled by a method of one's choice: the sets of balls, and the time of each step.
+//! A solid sampled by any method: the sets of balls, and the time of each step.
 
 use std::time::Instant;
 
@@ -8,7 +8,7 @@ use crate::ball::Ball;
 use crate::knots::{Knots, KnotsError};
 use crate::mesh::{Frame, Solid};
 use crate::sampling::cover::Covering;
-use crate::sampling::decomposition::{DecompositionOptions, decompose_in_order};
+use crate::sampling::decomposition::{Decomposition, DecompositionOptions, decompose_in_order};
 use crate::sampling::grid::{DepthField, Grid};
 use crate::sampling::skeletal_density::{Priority, priorities};
 use crate::sampling::{octree, packing};
@@ -120,7 +120,7 @@ pub fn sample(solid: &Solid, per_axis: usize, method: Method) -> Result<Sampling
         seconds,
     };
     let mut covering = None;
-    let sets = match method {
+    let sets: Vec<BallSet> = match method {
         Method::BehandishIlies(options) => {
             let priorities = priorities(solid, &field, &nodes, options.priority);
             step(match options.priority {
@@ -130,11 +130,9 @@ pub fn sample(solid: &Solid, per_axis: usize, method: Method) -> Result<Sampling
             let found = decompose_in_order(solid, &field, &nodes, &priorities, options.mu)?;
             let seconds = step("decomposition");
             covering = Some(found.covering);
-            vec![
-                set(SetName::A1, found.a1, seconds),
-                set(SetName::A2, found.a2, seconds),
-                set(SetName::A3, found.a3, seconds),
-            ]
+            let Decomposition { a1, a2, a3, .. } = found;
+            let sets = [(SetName::A1, a1), (SetName::A2, a2), (SetName::A3, a3)];
+            sets.map(|(name, balls)| set(name, balls, seconds)).into()
         }
         Method::WellerZachmann => {
             let balls = packing::pack(&field);
@@ -146,10 +144,7 @@ pub fn sample(solid: &Solid, per_axis: usize, method: Method) -> Result<Sampling
         }
         Method::Voxels => {
             let radius = field.grid.epsilon();
-            let ball = |&node: &usize| Ball {
-                center: field.grid.node(node),
-                radius,
-            };
+            let ball = |&node: &usize| Ball::new(field.grid.node(node), radius);
             let balls = nodes.iter().map(ball).collect();
             vec![set(SetName::Voxels, balls, step("voxels"))]
         }
@@ -171,11 +166,8 @@ pub fn sample(solid: &Solid, per_axis: usize, method: Method) -> Result<Sampling
 /// # Errors
 /// [`KnotsError`] when there is no ball, the weights are fewer or more than the balls, or a radius underflows.
 pub fn knots(frame: Frame, balls: &[Ball], weights: Option<&[f64]>) -> Result<Knots, KnotsError> {
-    let centers = balls
-        .iter()
-        .map(|ball| frame.outward(ball.center))
-        .collect();
-    let radii = balls.iter().map(|ball| ball.radius * frame.unit).collect();
+    let placed = |ball: &Ball| (frame.outward(ball.center), ball.radius * frame.unit);
+    let (centers, radii) = balls.iter().map(placed).unzip();
     match weights {
         None => Knots::new(centers, radii),
         Some(weights) => Knots::with_weights(centers, radii, weights.to_vec()),

@@ -1,6 +1,6 @@
 //! Skeletal density: how much of the surface a ball about a point nearly touches.
 //!
-//! B&I order the nodes by a "skeletal density function" whose formula stands in a report that they cite. Ours is
+//! B&I order the nodes by a "skeletal density function" whose formula is in a report that they cite. Ours is
 //!
 //! ```text
 //! share(x) = 1 / (4 pi d^2)  integral over the surface of  exp(-((|x - q| / d - 1) / s)^2) dA(q),     d = d(x)
@@ -17,21 +17,20 @@
 //!
 //! It rests on the definition of the medial axis as the points with more than one nearest surface point (Blum, 1967),
 //! with "nearest" softened by a Gaussian. Weighting it by a power of d(x), 1/2, 1 or 2, changed the number of balls
-//! kept of the Stanford bunny by no more than 8% either way, so it stands alone.
+//! kept of the Stanford bunny by no more than 8% either way, so it has no such weight.
 
 use std::f64::consts::PI;
 
 use rayon::prelude::*;
 
-use crate::mesh::Solid;
-use crate::mesh::surface_pieces;
+use crate::mesh::{Solid, surface_pieces};
 use crate::sampling::grid::DepthField;
 use crate::vector::distance;
 
 /// Width s of "nearly nearest", as a share of the distance.
 pub const SHARE_WIDTH: f64 = 0.2;
 
-/// Where the Gaussian is cut, in widths: it is 5e-4 there.
+/// Cutoff of the Gaussian, in widths: it is 5e-4 there.
 const CUT: f64 = 2.75;
 
 /// A piece of the surface smaller than this share of the width counts as one point.

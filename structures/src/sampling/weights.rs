@@ -17,7 +17,6 @@ use crate::ball::Ball;
 use crate::numeric::Bump;
 use crate::sampling::grid::DepthField;
 
-/// Rounds over all weights at most.
 const ROUNDS: usize = 300;
 
 /// Ends when no weight of a round moves by more than this.
@@ -32,7 +31,7 @@ const SEEN: f64 = 0.1;
 /// Report on the fit.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct FittedWeights {
-    /// A weight a ball, zero or above.
+    /// One weight per ball, zero or above.
     #[serde(skip)]
     pub weights: Vec<f64>,
     /// The bump's exponent.
@@ -99,7 +98,7 @@ pub fn fit(field: &DepthField, balls: &[Ball], bump: Bump, volume: f64) -> Fitte
     }
 }
 
-/// The bumps of the balls at the nodes, one column a ball.
+/// The bumps of the balls at the nodes, one column per ball.
 fn columns(field: &DepthField, balls: &[Ball], bump: Bump) -> Vec<Column> {
     balls
         .par_iter()
@@ -121,7 +120,7 @@ fn columns(field: &DepthField, balls: &[Ball], bump: Bump) -> Vec<Column> {
         .collect()
 }
 
-/// Coordinate descent of the weights; `left` is what the summed bumps leave of the indicator. Returns the rounds.
+/// Coordinate descent of the weights; `left` is the indicator less the summed bumps. Returns the rounds.
 fn descend(columns: &[Column], weights: &mut [f64], left: &mut [f64]) -> usize {
     let squares: Vec<f64> = columns
         .iter()

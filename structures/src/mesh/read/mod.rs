@@ -1,10 +1,10 @@
 //! From a file to a mesh: STL (text and binary), OBJ, PLY (text and binary) and OFF.
 //!
-//! They are read here, by a page each, because the crates for them fall short: those for STL take a binary file whose
-//! header begins with `solid` for text, and keep only the first solid and 24 bits of a number; that for PLY refuses
-//! numbers and blank lines that real files have; none but that for PLY reports the line on which a file breaks.
+//! The crates for these formats fall short. Those for STL take a binary file whose header begins with `solid` for text,
+//! and keep only the first solid and 24 bits of a number. That for PLY refuses numbers and blank lines of real files. The
+//! others report no line.
 //!
-//! What a file begins with decides how it is read, then its name's ending. A file of another kind is refused by name.
+//! The first bytes of a file decide how it is read, then its name's ending. A file of another kind is refused by name.
 
 pub(super) mod encoding;
 pub(super) mod foreign;
@@ -23,7 +23,7 @@ use serde::Serialize;
 
 use crate::error::Error;
 use crate::mesh::read::encoding::{text_of, unified};
-use crate::mesh::read::soup::{At, Soup, broken, no_such_vertex, too_large};
+use crate::mesh::read::soup::{At, Soup, broken, too_large, vertex};
 use crate::mesh::repair::{edges, topology, weld};
 use crate::mesh::report::MeshReport;
 use crate::mesh::triangle_mesh::Mesh;
@@ -148,10 +148,8 @@ pub fn parse(bytes: &[u8], format: MeshFormat) -> Result<(Mesh, MeshReport), Err
     if sure_format(&bytes) != Some(format) {
         foreign::refuse(&bytes)?;
     }
-    let text = || {
-        text_of(&bytes)
-            .ok_or_else(|| broken(None, "these are binary data, where the format is a text"))
-    };
+    let binary = || broken(None, "these are binary data, where the format is a text");
+    let text = || text_of(&bytes).ok_or_else(binary);
     let mut soup = match format {
         MeshFormat::Stl => stl::parse(&bytes),
         MeshFormat::Obj => obj::parse(&text()?),
@@ -175,9 +173,7 @@ pub fn from_triangles(
         soup.push_vertex(position, None)?;
     }
     for &index in triangles.iter().flatten() {
-        if index as usize >= positions.len() {
-            return Err(no_such_vertex(None, i64::from(index), positions.len()));
-        }
+        vertex(None, index.into(), index.into(), positions.len())?;
     }
     for triangle in triangles {
         soup.push_face(triangle, At::Face(0));
@@ -186,7 +182,6 @@ pub fn from_triangles(
     assemble(soup, None)
 }
 
-/// Welds, checks and orients.
 fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport), Error> {
     if soup.faces.is_empty() {
         return Err(Error::input("the mesh has no triangles")
@@ -201,18 +196,12 @@ fn assemble(soup: Soup, format: Option<MeshFormat>) -> Result<(Mesh, MeshReport)
     };
     let mut mesh = weld::weld(soup.positions, soup.faces, &soup.digits, &mut report)?;
     report.times = edges::keep_first(&mut mesh.triangles);
-    if mesh
-        .triangles
-        .iter()
-        .all(|&triangle| mesh.is_sliver(triangle))
-    {
+    if mesh.triangles.iter().all(|&t| mesh.is_sliver(t)) {
         return Err(weld::degenerate(report.file_triangles));
     }
     if mesh.is_flat() {
-        return Err(Error::input(
-            "the mesh is flat: all its vertices lie in one plane, so it bounds no solid",
-        )
-        .help("give the surface of a solid, with a thickness"));
+        let message = "the mesh is flat: all its vertices lie in one plane, so it bounds no solid";
+        return Err(Error::input(message).help("give the surface of a solid, with a thickness"));
     }
     topology::orient(&mut mesh, &mut report)?;
     report.measure(&mesh);

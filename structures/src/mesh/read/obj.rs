@@ -3,7 +3,7 @@
 use std::borrow::Cow;
 
 use crate::error::Error;
-use crate::mesh::read::soup::{At, Soup, no_such_vertex};
+use crate::mesh::read::soup::{At, Soup, vertex};
 use crate::mesh::read::words::{lines, real, shortened};
 
 /// Keywords other than `v` that a line of an OBJ file may begin with.
@@ -69,24 +69,16 @@ pub fn parse(text: &str) -> Result<Soup, Error> {
                 corners.clear();
                 for word in words {
                     // v, v/vt, v//vn or v/vt/vn.
-                    let vertex = word.split('/').next();
-                    let index: i64 = line.number(vertex, "the number of a vertex")?;
+                    let number = word.split('/').next();
+                    let index: i64 = line.number(number, "the number of a vertex")?;
                     let count = soup.positions.len();
-                    let place = match index {
-                        1.. => usize::try_from(index - 1).ok(),
-                        // Counted back from the latest vertex.
-                        ..=-1 => usize::try_from(index.unsigned_abs())
-                            .ok()
-                            .and_then(|back| count.checked_sub(back)),
-                        0 => None,
+                    // Counted from 1, or back from the latest vertex.
+                    let place = if index > 0 {
+                        index - 1
+                    } else {
+                        count as i64 + index
                     };
-                    match place
-                        .filter(|&place| place < count)
-                        .and_then(|place| u32::try_from(place).ok())
-                    {
-                        Some(place) => corners.push(place),
-                        None => return Err(no_such_vertex(line.number, index, count)),
-                    }
+                    corners.push(vertex(line.number, index, place, count)?);
                 }
                 soup.push_face(&corners, At::Line(line.number));
             }

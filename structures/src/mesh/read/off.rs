@@ -5,7 +5,7 @@
 //! wrapped, or be one.
 
 use crate::error::Error;
-use crate::mesh::read::soup::{At, Soup, broken, no_such_vertex};
+use crate::mesh::read::soup::{At, Soup, broken, vertex};
 use crate::mesh::read::words::{Line, Records, by_line_or_stream, lines};
 
 /// The keyword that a file begins with, and the letters before its `OFF`.
@@ -65,8 +65,8 @@ pub fn parse(text: &str) -> Result<Soup, Error> {
     by_line_or_stream(&lines, by_line, &attempts, body)
 }
 
-/// How many numbers follow the coordinates of a vertex, by what stands before `OFF`: normals, colours with or without
-/// transparency, places in a picture. None where the file is not read.
+/// Count of numbers after the coordinates of a vertex, by the letters before `OFF`: normals, colours with or without
+/// transparency, places in a picture. `None` if the file is not read.
 fn numbers_after(prefix: &str) -> Option<Vec<usize>> {
     let left = prefix.strip_prefix("ST").unwrap_or(prefix);
     let is_known = left.chars().all(|c| "CN".contains(c));
@@ -93,7 +93,7 @@ fn body<'a, L: Iterator<Item = Line<'a>>>(
     let mut soup = Soup::default();
     for index in 0..vertices {
         words.begin(|| format!("vertex {} of {vertices}", index + 1))?;
-        let line = words.line();
+        let line = words.line;
         let position = line.point(words, &mut soup.digits)?;
         soup.push_vertex(position, Some(line.number))?;
         for _ in 0..shape.more {
@@ -103,18 +103,12 @@ fn body<'a, L: Iterator<Item = Line<'a>>>(
     let mut corners = Vec::new();
     for index in 0..faces {
         words.begin(|| format!("face {} of {faces}", index + 1))?;
-        let at = At::Line(words.line().number);
+        let at = At::Line(words.line.number);
         let size: usize = number(words, "the number of a face's vertices")?;
         corners.clear();
         for _ in 0..size {
             let index: i64 = number(words, "the index of a vertex")?;
-            match u32::try_from(index)
-                .ok()
-                .filter(|&index| (index as usize) < vertices)
-            {
-                Some(index) => corners.push(index),
-                None => return Err(no_such_vertex(words.line().number, index, vertices)),
-            }
+            corners.push(vertex(words.line.number, index, index, vertices)?);
         }
         soup.push_face(&corners, at);
     }
@@ -126,5 +120,5 @@ fn number<'a, L: Iterator<Item = Line<'a>>, T: std::str::FromStr>(
     what: &str,
 ) -> Result<T, Error> {
     let word = words.next();
-    words.line().number(word, what)
+    words.line.number(word, what)
 }

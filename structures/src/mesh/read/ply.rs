@@ -2,18 +2,15 @@
 //! `vertex_index`, a list of any number type). Other elements and properties are passed over.
 
 use crate::error::Error;
-use crate::mesh::read::soup::{At, Soup, broken, no_such_vertex};
+use crate::mesh::read::soup::{At, Soup, broken, vertex};
 use crate::mesh::read::words::{Line, Records, by_line_or_stream, lines, real, shortened};
 
-/// Names of the list of a face's vertices.
-const LISTS: [&str; 2] = ["vertex_indices", "vertex_index"];
-
-/// What an element of the file is to a mesh.
+/// Role of an element of the file in the mesh.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Role {
     Vertex,
     Face,
-    /// Triangles that each take over two vertices of the one before; a negative number ends a strip.
+    /// Triangles that each share two vertices with the one before; a negative number ends a strip.
     Strip,
     Other,
 }
@@ -28,7 +25,6 @@ enum Kind {
 /// Type of a number: its kind, and its size in bytes.
 type Scalar = (Kind, usize);
 
-/// The type that a word of the header names.
 fn scalar(name: &str) -> Option<Scalar> {
     Some(match name {
         "char" | "int8" => (Kind::Signed, 1),
@@ -43,12 +39,23 @@ fn scalar(name: &str) -> Option<Scalar> {
     })
 }
 
+/// Role of a number of the file in the mesh.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Use {
+    /// Along this axis.
+    Coordinate(usize),
+    Length,
+    Index,
+    None,
+}
+
 #[derive(Debug)]
 struct Property {
     name: String,
     kind: Scalar,
     /// Type of the length; none for a single number.
     length: Option<Scalar>,
+    role: Use,
 }
 
 #[derive(Debug)]
@@ -62,19 +69,32 @@ struct Element {
 impl Element {
     /// Refuses an element that lacks a property that its role needs.
     fn check(&self) -> Result<(), Error> {
-        let has = |name: &str, list: bool| {
-            let mut own = self.properties.iter();
-            own.any(|property| property.name == name && property.length.is_some() == list)
-        };
+        let has = |role: Use| self.properties.iter().any(|property| property.role == role);
         match self.role {
-            Role::Vertex if !["x", "y", "z"].iter().all(|axis| has(axis, false)) => Err(broken(
-                None,
-                "the vertices lack one of the properties x, y and z",
-            )),
-            Role::Face | Role::Strip if !LISTS.iter().any(|list| has(list, true)) => {
+            Role::Vertex if !(0..3).all(|axis| has(Use::Coordinate(axis))) => {
+                let fault = "the vertices lack one of the properties x, y and z";
+                Err(broken(None, fault))
+            }
+            Role::Face | Role::Strip if !has(Use::Index) => {
                 Err(broken(None, "the faces lack the list vertex_indices"))
             }
             _ => Ok(()),
+        }
+    }
+
+    fn property(&self, kind: Scalar, length: Option<Scalar>, name: &str) -> Property {
+        let role = match (self.role, name, length) {
+            (Role::Vertex, "x", None) => Use::Coordinate(0),
+            (Role::Vertex, "y", None) => Use::Coordinate(1),
+            (Role::Vertex, "z", None) => Use::Coordinate(2),
+            (Role::Face | Role::Strip, "vertex_indices" | "vertex_index", Some(_)) => Use::Index,
+            _ => Use::None,
+        };
+        Property {
+            name: name.to_owned(),
+            kind,
+            length,
+            role,
         }
     }
 }
@@ -94,21 +114,17 @@ pub fn begins(bytes: &[u8]) -> bool {
 
 /// Reads a file.
 pub fn parse(bytes: &[u8]) -> Result<Soup, Error> {
-    let Header {
-        encoding,
-        elements,
-        payload,
-        lines: before,
-    } = header(bytes)?;
+    let header = header(bytes)?;
+    let (elements, payload) = (header.elements, header.payload);
     if !elements.iter().any(|element| element.role == Role::Vertex) {
         return Err(broken(None, "the header has no element vertex"));
     }
-    if encoding != Encoding::Text {
-        return binary(&elements, payload, encoding == Encoding::BigEndian);
+    if header.encoding != Encoding::Text {
+        return binary(&elements, payload, header.encoding == Encoding::BigEndian);
     }
     let text = String::from_utf8_lossy(payload);
     let lines = lines(&text, false).map(|line| Line {
-        number: line.number + before,
+        number: line.number + header.lines,
         ..line
     });
     by_line_or_stream(&lines, (), &[()], |words, ()| {
@@ -116,7 +132,6 @@ pub fn parse(bytes: &[u8]) -> Result<Soup, Error> {
     })
 }
 
-/// The header of a file.
 struct Header<'a> {
     encoding: Encoding,
     elements: Vec<Element>,
@@ -126,7 +141,6 @@ struct Header<'a> {
     lines: usize,
 }
 
-/// Reads the header.
 fn header(bytes: &[u8]) -> Result<Header<'_>, Error> {
     let lead = bytes.len() - bytes.trim_ascii_start().len();
     let (blank, start) = bytes.split_at(lead);
@@ -134,13 +148,12 @@ fn header(bytes: &[u8]) -> Result<Header<'_>, Error> {
     if !begins(bytes) {
         let first = start.split(|&byte| matches!(byte, b'\n' | b'\r')).next();
         return Err(match first {
-            Some(first) if !first.is_empty() => broken(
-                number + 1,
-                format!(
-                    "this is no PLY: it begins with '{}' in place of 'ply'",
-                    shortened(&String::from_utf8_lossy(first))
-                ),
-            ),
+            Some(first) if !first.is_empty() => {
+                let first = String::from_utf8_lossy(first);
+                let first = shortened(&first);
+                let fault = format!("this is no PLY: it begins with '{first}' in place of 'ply'");
+                broken(number + 1, fault)
+            }
             _ => broken(None, "the file is empty"),
         });
     }
@@ -183,17 +196,14 @@ fn header(bytes: &[u8]) -> Result<Header<'_>, Error> {
                 properties: Vec::new(),
             }),
             (["property", "list", length, kind, name], Some(element)) => {
-                element.properties.push(Property {
-                    name: (*name).to_owned(),
-                    kind: scalar(kind).ok_or_else(fault)?,
-                    length: Some(scalar(length).ok_or_else(fault)?),
-                });
+                let [length, kind] = [length, kind].map(|word| scalar(word).ok_or_else(fault));
+                let property = element.property(kind?, Some(length?), name);
+                element.properties.push(property);
             }
-            (["property", kind, name], Some(element)) => element.properties.push(Property {
-                name: (*name).to_owned(),
-                kind: scalar(kind).ok_or_else(fault)?,
-                length: None,
-            }),
+            (["property", kind, name], Some(element)) => {
+                let kind = scalar(kind).ok_or_else(fault)?;
+                element.properties.push(element.property(kind, None, name));
+            }
             (["end_header"], _) => {
                 let encoding =
                     encoding.ok_or_else(|| broken(None, "the header has no line 'format'"))?;
@@ -207,13 +217,10 @@ fn header(bytes: &[u8]) -> Result<Header<'_>, Error> {
             _ => return Err(fault()),
         }
     }
-    Err(broken(
-        None,
-        "the header does not end: there is no line 'end_header'",
-    ))
+    let fault = "the header does not end: there is no line 'end_header'";
+    Err(broken(None, fault))
 }
 
-/// Reads binary data.
 fn binary(elements: &[Element], payload: &[u8], is_big: bool) -> Result<Soup, Error> {
     let read = |rest| {
         let mut data: Data<'_, '_, std::iter::Empty<_>> = Data::Binary { rest, is_big };
@@ -234,19 +241,10 @@ fn binary(elements: &[Element], payload: &[u8], is_big: bool) -> Result<Soup, Er
     found.and_then(|(faces, _)| faces.into_soup())
 }
 
-/// What follows the header.
+/// The data after the header.
 enum Data<'r, 'a, L> {
     Text(&'r mut Records<'a, L>),
     Binary { rest: &'a [u8], is_big: bool },
-}
-
-/// What a number of the file is to a mesh.
-#[derive(Clone, Copy, PartialEq)]
-enum Use {
-    Coordinate,
-    Length,
-    Index,
-    None,
 }
 
 impl<'a, L: Iterator<Item = Line<'a>>> Data<'_, 'a, L> {
@@ -282,16 +280,14 @@ impl<'a, L: Iterator<Item = Line<'a>>> Data<'_, 'a, L> {
         };
         let Some(word) = words.next() else {
             let fault = format!("the line ends where {} is needed", what());
-            return Err(words.line().fault(fault));
+            return Err(words.line.fault(fault));
         };
         let (found, needed) = match role {
             Use::None => return Ok(0.0),
-            Use::Coordinate => {
+            Use::Coordinate(_) => {
                 soup.digits.note(word);
-                let single = word
-                    .parse::<f32>()
-                    .ok()
-                    .filter(|_| kind == (Kind::Float, 4));
+                let is_single = kind == (Kind::Float, 4);
+                let single = word.parse::<f32>().ok().filter(|_| is_single);
                 (single.map(f64::from).or_else(|| real(word)), "a coordinate")
             }
             Use::Length => {
@@ -300,11 +296,10 @@ impl<'a, L: Iterator<Item = Line<'a>>> Data<'_, 'a, L> {
             }
             Use::Index => (word.parse().ok(), "the index of a vertex"),
         };
-        found.ok_or_else(|| words.line().misplaced(word, needed))
+        found.ok_or_else(|| words.line.misplaced(word, needed))
     }
 }
 
-/// Reads all elements.
 fn read<'a, L: Iterator<Item = Line<'a>>>(
     elements: &[Element],
     data: &mut Data<'_, 'a, L>,
@@ -322,7 +317,7 @@ fn read<'a, L: Iterator<Item = Line<'a>>>(
             let at = match data {
                 Data::Text(words) => {
                     words.begin(|| format!("{name} {index} of {count}"))?;
-                    At::Line(words.line().number)
+                    At::Line(words.line.number)
                 }
                 Data::Binary { .. } => At::Face(index),
             };
@@ -331,43 +326,32 @@ fn read<'a, L: Iterator<Item = Line<'a>>>(
             for property in &element.properties {
                 let what = || format!("the property {} of {name} {index}", property.name);
                 let soup = &mut faces.soup;
-                let Some(length) = property.length else {
-                    let axes = ["x", "y", "z"];
-                    let axis = axes.iter().position(|axis| *axis == property.name);
-                    let axis = axis.filter(|_| *role == Role::Vertex);
-                    let needed = axis.map_or(Use::None, |_| Use::Coordinate);
-                    let value = data.number(property.kind, needed, soup, what)?;
-                    if let Some(axis) = axis {
-                        position[axis] = value;
-                    }
-                    continue;
+                let count = match property.length {
+                    Some(length) => whole(data.number(length, Use::Length, soup, what)?),
+                    None => 1,
                 };
-                let length = data.number(length, Use::Length, soup, what)?;
-                let is_faces = matches!(role, Role::Face | Role::Strip)
-                    && LISTS.contains(&property.name.as_str());
-                for _ in 0..usize::try_from(whole(length)).unwrap_or(0) {
-                    let needed = if is_faces { Use::Index } else { Use::None };
-                    let value = data.number(property.kind, needed, soup, what)?;
-                    if is_faces {
-                        indices.push(whole(value));
+                for _ in 0..count {
+                    let value = data.number(property.kind, property.role, soup, what)?;
+                    match property.role {
+                        Use::Coordinate(axis) => position[axis] = value,
+                        Use::Index => indices.push(whole(value)),
+                        Use::Length | Use::None => {}
                     }
                 }
             }
-            match (role, at) {
-                (Role::Vertex, At::Line(line)) => faces.soup.push_vertex(position, Some(line))?,
-                (Role::Vertex, _) => faces.soup.push_vertex(position, None)?,
-                (Role::Face | Role::Strip, at) => {
-                    faces.lists.push((*role, at, indices));
-                    continue;
+            match role {
+                Role::Vertex => {
+                    faces.soup.push_vertex(position, at.line())?;
                 }
-                (Role::Other, _) => continue,
-            };
+                Role::Face | Role::Strip => faces.lists.push((*role, at, indices)),
+                Role::Other => {}
+            }
         }
     }
     Ok(faces)
 }
 
-/// A whole number that may be written as another one is; one that is none names no vertex.
+/// A whole number, in whatever type it is written; any other number names no vertex.
 fn whole(value: f64) -> i64 {
     if value.fract() == 0.0 {
         value as i64
@@ -391,16 +375,10 @@ impl FaceLists {
         let vertices = soup.positions.len();
         let mut corners = Vec::new();
         for (role, at, indices) in lists {
-            let line = match at {
-                At::Line(line) => Some(line),
-                _ => None,
-            };
             for run in indices.split(|&index| role == Role::Strip && index < 0) {
                 corners.clear();
                 for &index in run {
-                    let place = u32::try_from(index).ok();
-                    let place = place.filter(|&place| (place as usize) < vertices);
-                    corners.push(place.ok_or_else(|| no_such_vertex(line, index, vertices))?);
+                    corners.push(vertex(at.line(), index, index, vertices)?);
                 }
                 if role != Role::Strip {
                     soup.push_face(&corners, at);

@@ -1,4 +1,4 @@
-//! Vertices and faces of a file, and what was left out.
+//! Vertices and faces of a file, and notes on the parts that were left out.
 
 use std::fmt;
 
@@ -11,13 +11,19 @@ pub fn broken(line: impl Into<Option<usize>>, what: impl fmt::Display) -> Error 
     at_line(line, what).help("export the mesh again: the file may be cut short or written by hand")
 }
 
-/// A face that names a vertex that the file does not have: `index` as it is written, with `vertices` to choose from.
-pub fn no_such_vertex(line: impl Into<Option<usize>>, index: i64, vertices: usize) -> Error {
-    at_line(
-        line,
-        format!("a face names vertex {index}, but there are {vertices}"),
-    )
-    .help("export the mesh again: faces and vertices do not fit together")
+/// The vertex at `place`, from 0, of the file's `vertices`; `index` is its number as it is written.
+pub fn vertex(
+    line: impl Into<Option<usize>>,
+    index: i64,
+    place: i64,
+    vertices: usize,
+) -> Result<u32, Error> {
+    let place = u32::try_from(place).ok();
+    let place = place.filter(|&place| (place as usize) < vertices);
+    place.ok_or_else(|| {
+        let fault = format!("a face names vertex {index}, but there are {vertices}");
+        at_line(line, fault).help("export the mesh again: faces and vertices do not fit together")
+    })
 }
 
 fn at_line(line: impl Into<Option<usize>>, what: impl fmt::Display) -> Error {
@@ -38,7 +44,6 @@ pub struct Soup {
     pub faces: Faces,
     /// How the coordinates are written, in a text format.
     pub digits: Digits,
-    /// What was left out, or read otherwise than the file says.
     pub notes: Notes,
     /// Vertices with a coordinate that no distance can be computed from.
     unplaced: Vec<Unplaced>,
@@ -64,6 +69,16 @@ pub enum At {
     Vertex(usize),
 }
 
+impl At {
+    /// The line, in a text.
+    pub fn line(self) -> Option<usize> {
+        match self {
+            Self::Line(line) => Some(line),
+            _ => None,
+        }
+    }
+}
+
 impl fmt::Display for At {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
@@ -75,7 +90,7 @@ impl fmt::Display for At {
     }
 }
 
-/// What is left out of a file that is read all the same.
+/// Parts of a file that are left out while the rest is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum LeftOut {
     /// A face of fewer than three vertices.
@@ -110,26 +125,20 @@ impl Notes {
     /// All sentences.
     pub fn into_sentences(mut self) -> Vec<String> {
         for (what, count, first) in self.left_out {
-            let (one, several, rest) = match what {
-                LeftOut::ShortFace => (
-                    "a face of fewer than three vertices was",
-                    "faces of fewer than three vertices were",
-                    "",
-                ),
-                LeftOut::FacetWithoutPlace => (
-                    "a facet with a coordinate that is not finite was",
-                    "facets with a coordinate that is not finite were",
-                    "",
-                ),
-                LeftOut::VertexWithoutPlace => (
-                    "a vertex with a coordinate that is not finite or beyond 1e30 was",
-                    "vertices with a coordinate that is not finite or beyond 1e30 were",
-                    "; no face uses it",
-                ),
+            let (one, several, kind, rest) = match what {
+                LeftOut::ShortFace => ("a face", "faces", "of fewer than three vertices", ""),
+                LeftOut::FacetWithoutPlace => {
+                    let kind = "with a coordinate that is not finite";
+                    ("a facet", "facets", kind, "")
+                }
+                LeftOut::VertexWithoutPlace => {
+                    let kind = "with a coordinate that is not finite or beyond 1e30";
+                    ("a vertex", "vertices", kind, "; no face uses it")
+                }
             };
             self.sentences.push(match count {
-                1 => format!("{one} left out, {first}{rest}"),
-                _ => format!("{count} {several} left out, the first {first}{rest}"),
+                1 => format!("{one} {kind} was left out, {first}{rest}"),
+                _ => format!("{count} {several} {kind} were left out, the first {first}{rest}"),
             });
         }
         self.sentences
@@ -150,13 +159,12 @@ impl Soup {
             return Err(too_large(format!("more than {} vertices", u32::MAX)));
         };
         let bad = |value: &f64| value.is_nan() || value.abs() > LARGEST_LENGTH;
-        if let Some(value) = position.into_iter().find(bad) {
-            self.unplaced.push(Unplaced {
-                vertex,
-                line,
-                value,
-            });
-        }
+        let bad = position.into_iter().find(bad);
+        self.unplaced.extend(bad.map(|value| Unplaced {
+            vertex,
+            line,
+            value,
+        }));
         self.positions.push(position);
         Ok(vertex)
     }
@@ -170,34 +178,31 @@ impl Soup {
         }
     }
 
-    /// Refuses faces that use a vertex without a place; where no face does, takes note of it.
+    /// Refuses faces that use a vertex without a place; notes such vertices that no face uses.
     pub fn settle(&mut self) -> Result<(), Error> {
         if self.unplaced.is_empty() {
             return Ok(());
         }
         // In the order of vertices, as they were added.
-        let find = |corner: &u32| {
-            let place = self.unplaced.binary_search_by_key(corner, |bad| bad.vertex);
-            place.ok()
+        let find = |corner| {
+            self.unplaced
+                .binary_search_by_key(corner, |bad| bad.vertex)
+                .ok()
         };
-        if let Some(first) = self.faces.corners().iter().filter_map(find).min() {
-            let Unplaced {
-                vertex,
-                line,
-                value,
-            } = self.unplaced[first];
-            let number = u64::from(vertex) + 1;
+        if let Some(first) = self.faces.corners.iter().filter_map(find).min() {
+            let bad = self.unplaced[first];
             let what = format!(
-                "vertex {number} has coordinate {value:e}; coordinates must be finite and at most 1e30 in magnitude"
+                "vertex {} has coordinate {:e}; coordinates must be finite and at most 1e30 in magnitude",
+                u64::from(bad.vertex) + 1,
+                bad.value
             );
-            return Err(at_line(line, what).help(
+            return Err(at_line(bad.line, what).help(
                 "export the mesh again from a program that reports what is broken, or remove the vertex",
             ));
         }
         for bad in std::mem::take(&mut self.unplaced) {
-            let at = bad
-                .line
-                .map_or(At::Vertex(bad.vertex as usize + 1), At::Line);
+            let vertex = At::Vertex(bad.vertex as usize + 1);
+            let at = bad.line.map_or(vertex, At::Line);
             self.notes.left_out(LeftOut::VertexWithoutPlace, at);
         }
         Ok(())
@@ -207,8 +212,8 @@ impl Soup {
 /// Polygons of three or more corners.
 #[derive(Clone, Debug, Default)]
 pub struct Faces {
-    /// Corners of all faces.
-    corners: Vec<u32>,
+    /// Corners of all faces, in their order.
+    pub corners: Vec<u32>,
     /// Number of corners of each face.
     sizes: Vec<u32>,
 }
@@ -225,16 +230,6 @@ impl Faces {
     /// Whether there is none.
     pub fn is_empty(&self) -> bool {
         self.sizes.is_empty()
-    }
-
-    /// The corners of all faces, in their order.
-    pub fn corners(&self) -> &[u32] {
-        &self.corners
-    }
-
-    /// The same, to rename vertices.
-    pub fn corners_mut(&mut self) -> &mut [u32] {
-        &mut self.corners
     }
 
     /// The corners of each face.

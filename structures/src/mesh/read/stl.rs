@@ -28,7 +28,6 @@ const RECORD: usize = 50;
 /// How far records that the header does not count may lie from those that it counts, in sizes of these.
 const FARTHEST: f64 = 1e3;
 
-/// Number of triangles that the header gives.
 fn counted(bytes: &[u8]) -> Option<usize> {
     let count = bytes.get(80..HEADER)?.try_into().ok()?;
     usize::try_from(u32::from_le_bytes(count)).ok()
@@ -39,13 +38,11 @@ pub fn has_records(bytes: &[u8]) -> bool {
     counted(bytes).is_some_and(|count| count > 0 && bytes.len() == HEADER + RECORD * count)
 }
 
-/// Reads a binary file.
 fn parse_binary(bytes: &[u8]) -> Result<Soup, Error> {
     let Some(count) = counted(bytes) else {
-        return Err(broken(
-            None,
-            "this is neither a text STL (it does not begin with 'solid') nor a binary one (it is shorter than the header of 84 bytes)",
-        ));
+        let what = "this is neither a text STL (it does not begin with 'solid') nor a binary one (it is shorter than the \
+                    header of 84 bytes)";
+        return Err(broken(None, what));
     };
     let records = bytes.get(HEADER..).unwrap_or_default();
     let (there, left) = (records.len() / RECORD, records.len() % RECORD);
@@ -57,9 +54,7 @@ fn parse_binary(bytes: &[u8]) -> Result<Soup, Error> {
         return Err(broken(None, what));
     }
     let mut soup = Soup::default();
-    let mut number = 0;
-    for record in records.chunks_exact(RECORD).take(count) {
-        number += 1;
+    for (record, number) in records.chunks_exact(RECORD).take(count).zip(1..) {
         push(&mut soup, corners(record), number)?;
     }
     if there < count {
@@ -90,11 +85,10 @@ fn parse_binary(bytes: &[u8]) -> Result<Soup, Error> {
     let more = more
         .get(..filled.map_or(0, |last| last + 1))
         .unwrap_or_default();
-    for &corners in more {
-        number += 1;
+    for (&corners, number) in more.iter().zip(count + 1..) {
         push(&mut soup, corners, number)?;
     }
-    let read = number;
+    let read = count + more.len();
     soup.notes.say(if more.is_empty() {
         format!(
             "the header promises {count} triangles, and {} bytes that are none follow them; these were not read",
@@ -136,15 +130,12 @@ fn push(soup: &mut Soup, corners: Corners, number: usize) -> Result<(), Error> {
 /// Whether a record that the header does not count may be a triangle of the mesh: bytes that are none give numbers of
 /// any size.
 fn is_near(soup: &Soup, corners: &Corners) -> bool {
-    if soup.positions.is_empty() {
-        return true;
-    }
-    let largest = |values: &mut dyn Iterator<Item = f64>| {
+    let largest = |points: &[[f64; 3]]| {
+        let values = points.iter().flatten();
         values.fold(0.0, |largest: f64, value| largest.max(value.abs()))
     };
     // Numbers that are none are left out later.
-    let size = largest(&mut soup.positions.iter().flatten().copied());
-    largest(&mut corners.iter().flatten().copied()) <= FARTHEST * size
+    soup.positions.is_empty() || largest(corners) <= FARTHEST * largest(&soup.positions)
 }
 
 /// Words that begin something inside a facet.
@@ -154,11 +145,9 @@ const WORDS: [&str; 7] = [
 
 /// Lines without comments; some programs put some before the first solid.
 fn plain_lines(text: &str) -> impl Iterator<Item = Line<'_>> {
-    lines(text, false).filter(|line| {
-        !["#", "//", ";"]
-            .iter()
-            .any(|mark| line.text.starts_with(mark))
-    })
+    let marks = ["#", "//", ";"];
+    let is_comment = move |line: &Line<'_>| marks.iter().any(|mark| line.text.starts_with(mark));
+    lines(text, false).filter(move |line| !is_comment(line))
 }
 
 /// Lines in which the first solid or facet must begin.
@@ -166,16 +155,12 @@ const MAX_LINES_BEFORE: usize = 100;
 
 /// Whether a line begins a solid, with any name, or a facet.
 fn is_first(line: &Line<'_>) -> bool {
-    let mut words = line.words();
-    let mut is = |name: &str| {
-        let word = words.next();
-        word.is_some_and(|word| word.eq_ignore_ascii_case(name))
-    };
-    let word = line.words().next().unwrap_or_default();
-    if word.eq_ignore_ascii_case("solid") {
-        return true;
+    let mut words = line.words().map(str::to_ascii_lowercase);
+    match words.next().as_deref() {
+        Some("solid") => true,
+        Some("facet") => words.next().as_deref() == Some("normal"),
+        _ => false,
     }
-    is("facet") && is("normal")
 }
 
 /// Whether a text begins as an STL file does, with or without its first line.
@@ -202,7 +187,7 @@ impl<'a> Words<'a> {
         }
     }
 
-    /// Leaves out a name, which may be anything: up to what begins a facet, or the end of the line.
+    /// Leaves out a name, any words up to the beginning of a facet or the end of the line.
     fn skip_name(&mut self, names: &[&str]) {
         loop {
             self.skip_to(names);
@@ -217,7 +202,6 @@ impl<'a> Words<'a> {
     }
 }
 
-/// Reads a text.
 fn parse_text(text: &str) -> Result<Soup, Error> {
     let mut before = plain_lines(text).take(MAX_LINES_BEFORE);
     let Some(before) = before.position(|line| is_first(&line)) else {

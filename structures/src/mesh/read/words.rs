@@ -24,14 +24,14 @@ impl<'a> Line<'a> {
         broken(self.number, what)
     }
 
-    /// A number, whatever it is; the caller says what it is for.
+    /// A number; `what` is its role, for messages.
     pub fn number<T: std::str::FromStr>(&self, word: Option<&str>, what: &str) -> Result<T, Error> {
         let word =
             word.ok_or_else(|| self.fault(format!("the line ends where {what} is needed")))?;
         word.parse().map_err(|_| self.misplaced(word, what))
     }
 
-    /// A word stands where something else is needed.
+    /// The error of a word in place of something else.
     pub fn misplaced(&self, word: &str, what: &str) -> Error {
         self.fault(format!(
             "'{}' stands where {what} is needed",
@@ -58,7 +58,7 @@ impl<'a> Line<'a> {
     }
 }
 
-/// A number, or NaN for what programs write in place of one: `nan`, `-nan(ind)`, `1.#QNAN`.
+/// A number, or NaN for the words that programs write in place of one: `nan`, `-nan(ind)`, `1.#QNAN`.
 pub fn real(word: &str) -> Option<f64> {
     word.parse().ok().or_else(|| {
         let word = word.trim_start_matches(['+', '-']);
@@ -93,12 +93,13 @@ pub fn lines(text: &str, comments: bool) -> impl Iterator<Item = Line<'_>> + Clo
         })
 }
 
-/// Records of a text, each on a line of its own, or all in one stream of words.
+/// Records of a text, one per line or all in one stream of words.
 ///
-/// Most files have a line a record, often with more words than are needed. Some wrap lines, or have but one.
+/// Most files have one line per record, often with more words than are needed. Some wrap lines, or have but one.
 pub struct Records<'a, L> {
     lines: L,
-    line: Line<'a>,
+    /// The line of the last word.
+    pub line: Line<'a>,
     words: std::str::SplitAsciiWhitespace<'a>,
     /// Whether lines mean nothing.
     is_stream: bool,
@@ -117,12 +118,7 @@ impl<'a, L: Iterator<Item = Line<'a>>> Records<'a, L> {
         }
     }
 
-    /// The line of the last word.
-    pub fn line(&self) -> Line<'a> {
-        self.line
-    }
-
-    /// Goes to the next record, of which `what` says what it is.
+    /// Goes to the next record, named `what` in messages.
     pub fn begin(&mut self, what: impl FnOnce() -> String) -> Result<(), Error> {
         if self.is_stream && self.words.clone().next().is_some() {
             return Ok(());
@@ -145,7 +141,6 @@ impl<'a, L: Iterator<Item = Line<'a>>> Records<'a, L> {
 impl<'a, L: Iterator<Item = Line<'a>>> Iterator for Records<'a, L> {
     type Item = &'a str;
 
-    /// The next word of the record.
     fn next(&mut self) -> Option<&'a str> {
         let mut word = self.words.next();
         if word.is_none() && self.is_stream {
@@ -157,7 +152,7 @@ impl<'a, L: Iterator<Item = Line<'a>>> Iterator for Records<'a, L> {
     }
 }
 
-/// Reads records a line each, and if that fails or leaves lines over as a stream of words, by each of `attempts` in
+/// Reads records one per line, and if that fails or leaves lines over as a stream of words, by each of `attempts` in
 /// turn, until one takes every word there is.
 pub fn by_line_or_stream<'a, L, A, T>(
     lines: &L,

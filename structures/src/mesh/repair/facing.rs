@@ -1,7 +1,7 @@
-//! Orientation of surfaces: what faces inward is turned, but for the walls of cavities.
+//! Orientation of surfaces: those that face inward are turned, but for the walls of cavities.
 //!
 //! A **surface** is a closed part, or all parts whose open or unbalanced edges come near one another. A piece of a
-//! surface, such as a face whose seams a file did not close, has no inside of its own. From the outside in, a surface
+//! surface, such as a face whose seams a file did not close, has no inside. From the outside in, a surface
 //! that lies
 //!
 //! - in no other faces outward; if it is turned, so is all that lies within it;
@@ -21,12 +21,12 @@ use rayon::prelude::*;
 use crate::error::Error;
 use crate::mesh::repair::edges::Sets;
 use crate::mesh::report::MeshReport;
-use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
-use crate::mesh::triangle_tree::{TriangleTree, centroid};
+use crate::mesh::triangle_mesh::{Mesh, centroid, doubled_normal};
+use crate::mesh::triangle_tree::TriangleTree;
 use crate::mesh::winding::encloses;
 use crate::neighbours::box_tree::{LEAF, box_tree};
-use crate::neighbours::cell::{Cell, around, cell_of};
-use crate::vector::{add, cross, dot, norm, scale, subtract};
+use crate::neighbours::{Cell, around, cell_of};
+use crate::vector::{add, bounds, cross, dot, norm, scale, subtract};
 
 /// Largest distance, about, between the borders of two pieces of one surface, as a share of the mesh's longest side.
 const SEAM: f64 = 1e-4;
@@ -46,7 +46,6 @@ pub(in crate::mesh) struct Part {
     pub reverse: Option<usize>,
 }
 
-/// A surface, measured.
 struct Surface {
     parts: usize,
     triangles: Vec<u32>,
@@ -67,38 +66,23 @@ struct Surface {
 impl Surface {
     fn new(mesh: &Mesh, parts: &[Part], parts_of: &[usize]) -> Self {
         let own = || parts_of.iter().map(|&part| &parts[part]);
-        let triangles: Vec<u32> = own()
-            .flat_map(|part| part.triangles.iter().copied())
-            .collect();
+        let triangles: Vec<u32> = own().flat_map(|part| &part.triangles).copied().collect();
         let reverse = own().find_map(|part| part.reverse);
         let corners = || {
             triangles
                 .iter()
                 .map(|&triangle| mesh.corners(mesh.triangles[triangle as usize]))
         };
-        let outermost: Vec<[f64; 3]> = (0..6)
-            .filter_map(|side: usize| {
-                let along = |point: &[f64; 3]| {
-                    if side < 3 {
-                        point[side]
-                    } else {
-                        -point[side - 3]
-                    }
-                };
-                corners()
-                    .flatten()
-                    .max_by(|a, b| along(a).total_cmp(&along(b)))
-            })
-            .collect();
-        let end = |pick: fn(f64, f64) -> f64, start: f64| {
-            outermost.iter().fold([start; 3], |end, point| {
-                std::array::from_fn(|axis| pick(end[axis], point[axis]))
-            })
+        let sides = [1.0, -1.0]
+            .into_iter()
+            .flat_map(|sign| [0, 1, 2].map(|axis| (axis, sign)));
+        let farthest = |(axis, sign): (usize, f64)| {
+            let along = |point: &[f64; 3]| sign * point[axis];
+            let corners = corners().flatten();
+            corners.max_by(|a, b| along(a).total_cmp(&along(b)))
         };
-        let (low, high) = (
-            end(f64::min, f64::INFINITY),
-            end(f64::max, f64::NEG_INFINITY),
-        );
+        let outermost: Vec<[f64; 3]> = sides.filter_map(farthest).collect();
+        let (low, high) = bounds(outermost.iter().copied());
         let middle = scale(add(low, high), 0.5);
         let volume = corners()
             .map(|corners| {
@@ -244,18 +228,14 @@ fn surfaces(mesh: &Mesh, parts: &[Part], at_border: &[bool]) -> Vec<Vec<usize>> 
         if part.again.is_some() {
             continue;
         }
-        let border: Vec<u32> = part
-            .triangles
-            .iter()
-            .copied()
-            .filter(|&triangle| at_border[triangle as usize])
-            .collect();
+        let is_border = |triangle: &&u32| at_border[**triangle as usize];
+        let border: Vec<&u32> = part.triangles.iter().filter(is_border).collect();
         if border.is_empty() {
             surfaces.push(vec![index]);
             continue;
         }
         open.push(index);
-        for triangle in border {
+        for &triangle in border {
             for corner in mesh.corners(mesh.triangles[triangle as usize]) {
                 let place = cell_of(corner, edge);
                 let first = *borders.entry(place).or_insert(index);
@@ -301,11 +281,7 @@ fn containers(mesh: &Mesh, surfaces: &[Surface]) -> Result<Vec<Vec<usize>>, Erro
     // Lowest corners in a tree, each box with the highest corner of all boxes below.
     let mut order: Vec<usize> = (0..surfaces.len()).collect();
     let corner = |&index: &usize| (surfaces[index].low, index);
-    let highest = |own: &[usize]| {
-        own.iter().fold([f64::NEG_INFINITY; 3], |high, &index| {
-            std::array::from_fn(|axis| high[axis].max(surfaces[index].high[axis]))
-        })
-    };
+    let highest = |own: &[usize]| bounds(own.iter().map(|&index| surfaces[index].high)).1;
     let nodes = box_tree(&mut order, LEAF, corner, highest);
     let (mut pairs, mut looked) = (0, 0);
     let mut by_box = Vec::with_capacity(surfaces.len());
@@ -315,9 +291,9 @@ fn containers(mesh: &Mesh, surfaces: &[Surface]) -> Result<Vec<Vec<usize>>, Erro
         while let Some(node) = waiting.pop() {
             let here = &nodes[node];
             looked += 1;
-            if (0..3)
-                .any(|axis| here.low[axis] > own.low[axis] || here.known[axis] < own.high[axis])
-            {
+            let is_beyond =
+                |axis: usize| here.low[axis] > own.low[axis] || here.known[axis] < own.high[axis];
+            if (0..3).any(is_beyond) {
                 continue;
             }
             if here.second > 0 {
@@ -347,13 +323,8 @@ fn containers(mesh: &Mesh, surfaces: &[Surface]) -> Result<Vec<Vec<usize>>, Erro
             about.retain(|&other| {
                 let outer = trees[other].get_or_init(|| {
                     let triangles = surfaces[other].triangles.iter();
-                    TriangleTree::of(
-                        triangles
-                            .map(|&t| mesh.triangles[t as usize])
-                            .filter(|&triangle| !mesh.is_sliver(triangle))
-                            .map(|triangle| mesh.corners(triangle))
-                            .collect(),
-                    )
+                    let triangles = triangles.map(|&t| mesh.triangles[t as usize]);
+                    TriangleTree::of(mesh.with_area(triangles).collect())
                 });
                 let earlier = match (own.is_inward(), surfaces[other].is_inward()) {
                     // Of two that coincide, the wall of a cavity is about what fills it.
@@ -369,7 +340,7 @@ fn containers(mesh: &Mesh, surfaces: &[Surface]) -> Result<Vec<Vec<usize>>, Erro
     Ok(containers)
 }
 
-/// Whether a surface lies within another; none where it lies on it all over.
+/// Whether a surface is within another; `None` if it is on it all over.
 fn is_within(mesh: &Mesh, inner: &Surface, outer: &TriangleTree) -> Option<bool> {
     let middle = |&triangle: &u32| centroid(mesh.corners(mesh.triangles[triangle as usize]));
     let count = inner.triangles.len();

@@ -3,7 +3,7 @@
 //! A fan from the first corner, which most readers use, lays triangles outside a face that is not convex: the distance
 //! to them is not the distance to the solid.
 //!
-//! The corners of a large polygon are a ring whose tips stand in a queue. When one is clipped its neighbours go to the
+//! The corners of a large polygon are a ring whose tips are in a queue. When one is clipped its neighbours go to the
 //! end, so that a round along the ring clips every second corner and triangles stay small. A tip that is no ear waits
 //! for the corner that is in its way, and queues again when that corner or a neighbour has gone. A tree of corners
 //! finds the corners in a triangle.
@@ -18,7 +18,7 @@ const FEW: usize = 64;
 
 /// Appends the triangles of a polygon with three or more corners, in its own orientation.
 ///
-/// A corner may stand there several times, as where a bridge leads from the rim to a hole and back. Vertices are
+/// A corner may occur several times, as if a bridge leads from the rim to a hole and back. Vertices are
 /// distinguished by their numbers, so those in one place must be one.
 ///
 /// A polygon that crosses itself, is far from plane or has no area gives a fan for what cannot be clipped. O(n log n)
@@ -30,7 +30,7 @@ pub fn triangulate(positions: &[[f64; 3]], corners: &[u32], triangles: &mut Vec<
     }
     let at = |corner: u32| positions.get(corner as usize).copied().unwrap_or_default();
     let mut left = corners.to_vec();
-    // A corner that stands there twice in a row is one; as two it would be a tip without a turn.
+    // A corner twice in succession is one; as two it would be a tip without a turn.
     left.dedup();
     while left.len() > 1 && left.first() == left.last() {
         left.pop();
@@ -58,7 +58,10 @@ fn clip_few(
                 left[tip],
                 left[(tip + 1) % count],
             ];
-            let ear = Ear::new(corners.map(&at), normal);
+            let ear = Ear {
+                corners: corners.map(&at),
+                normal,
+            };
             ear.is_tip()
                 && left
                     .iter()
@@ -99,27 +102,22 @@ fn newell(mut points: impl Iterator<Item = [f64; 3]>) -> [f64; 3] {
 /// A tip of a polygon with its two neighbours: the triangle that it would leave.
 struct Ear {
     corners: [[f64; 3]; 3],
+    /// The polygon's, of any length.
     normal: [f64; 3],
 }
 
 impl Ear {
-    /// The triangle of three corners in a row; `normal` is the polygon's, of any length.
-    fn new(corners: [[f64; 3]; 3], normal: [f64; 3]) -> Self {
-        Self { corners, normal }
-    }
-
     /// Twice the area of a triangle in units of the normal: above zero where it turns as the polygon does.
     fn turn(&self, p: [f64; 3], q: [f64; 3], r: [f64; 3]) -> f64 {
         dot(cross(subtract(q, p), subtract(r, p)), self.normal)
     }
 
-    /// Whether the tip stands out.
     fn is_tip(&self) -> bool {
         let [a, b, c] = self.corners;
         self.turn(a, b, c) > 0.0
     }
 
-    /// Whether a point lies in the triangle or on its rim.
+    /// Whether a point is in the triangle or on its rim.
     fn holds(&self, point: [f64; 3]) -> bool {
         let [a, b, c] = self.corners;
         let is_outside = |p, q| self.turn(p, q, point) < 0.0;
@@ -178,7 +176,7 @@ struct Ring {
 }
 
 impl Ring {
-    /// A ring of vertices, no two in a row alike; `normal` is the polygon's, of any length.
+    /// A ring of vertices, no two in succession alike; `normal` is the polygon's, of any length.
     fn new(vertices: &[u32], at: impl Fn(u32) -> [f64; 3], normal: [f64; 3]) -> Self {
         let count = vertices.len();
         let corner = |(place, &vertex): (usize, &u32)| Corner {
@@ -200,7 +198,6 @@ impl Ring {
         }
     }
 
-    /// Appends the triangles.
     fn clip(mut self, triangles: &mut Vec<[u32; 3]>) {
         let count = self.corners.len();
         for _ in 3..count {
@@ -216,7 +213,6 @@ impl Ring {
         }
     }
 
-    /// A tip between its neighbours.
     fn row(&self, tip: usize) -> [usize; 3] {
         let corner = &self.corners[tip];
         [corner.before, tip, corner.after]
@@ -226,7 +222,6 @@ impl Ring {
         row.map(|place| self.corners[place].vertex)
     }
 
-    /// The next tip of the queue that is an ear.
     fn next_ear(&mut self) -> Option<usize> {
         while let Some((tip, turn)) = self.queue.pop_front() {
             let corner = &self.corners[tip];
@@ -240,7 +235,10 @@ impl Ring {
     /// Whether a tip is an ear; if a corner is in its way, it waits for that one.
     fn is_ear(&mut self, tip: usize) -> bool {
         let row = self.row(tip);
-        let ear = Ear::new(row.map(|place| self.places[place]), self.normal);
+        let ear = Ear {
+            corners: row.map(|place| self.places[place]),
+            normal: self.normal,
+        };
         if !ear.is_tip() {
             return false;
         }
@@ -257,7 +255,6 @@ impl Ring {
         }
     }
 
-    /// Puts a tip at the end of the queue.
     fn enqueue(&mut self, tip: usize) {
         let corner = &mut self.corners[tip];
         corner.turn += 1;
@@ -334,7 +331,6 @@ impl CornerTree {
         None
     }
 
-    /// Takes a corner out.
     fn remove(&mut self, corner: usize) {
         if !std::mem::replace(&mut self.is_left[corner], false) {
             return;

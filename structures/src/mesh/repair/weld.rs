@@ -15,11 +15,11 @@ use crate::mesh::repair::{polygon, rounding};
 use crate::mesh::report::MeshReport;
 use crate::mesh::triangle_mesh::Mesh;
 use crate::neighbours::SpatialHash;
-use crate::vector::bounds;
+use crate::vector::{bounds, distance, extent};
 
 /// Largest distance of vertices that count as one, as a share of the longest edge of the bounding box. Files repeat a
 /// vertex with the same digits, so this needs to take up no more than the rounding of one conversion of units.
-pub const WELD_TOLERANCE: f64 = 1e-12;
+const WELD_TOLERANCE: f64 = 1e-12;
 
 /// Lengths below which squared areas are lost.
 const SMALLEST_EXTENT: f64 = 1e-60;
@@ -38,11 +38,9 @@ pub fn weld(
     report: &mut MeshReport,
 ) -> Result<Mesh, Error> {
     let count = faces.triangle_count();
-    let corners = faces.corners().iter();
+    let corners = faces.corners.iter();
     let (low, high) = bounds(corners.map(|&corner| positions[corner as usize]));
-    let extent = (0..3)
-        .map(|axis| high[axis] - low[axis])
-        .fold(0.0, f64::max);
+    let extent = extent((low, high));
     if extent == 0.0 {
         return Err(degenerate(count));
     }
@@ -52,9 +50,14 @@ pub fn weld(
         ))
         .help("export the mesh in a smaller unit of length"));
     }
-    let mut places = Places::new(low, extent * WELD_TOLERANCE, positions.len());
+    let reach = extent * WELD_TOLERANCE;
+    let mut places = Places {
+        reach,
+        cells: SpatialHash::with_origin(low, 2.0 * reach, positions.len() / 2),
+        kept: Vec::new(),
+    };
     let mut names = vec![NONE; positions.len()];
-    for corner in faces.corners_mut() {
+    for corner in &mut faces.corners {
         let name = &mut names[*corner as usize];
         if *name == NONE {
             *name = places.name(positions[*corner as usize]);
@@ -62,7 +65,7 @@ pub fn weld(
         *corner = *name;
     }
     drop((positions, names));
-    let kept = places.into_kept();
+    let kept = places.kept;
 
     let reach = rounding::reach(&kept, digits, extent);
     if reach > extent * WELD_TOLERANCE
@@ -70,7 +73,7 @@ pub fn weld(
     {
         let joined = (0..).zip(&names).filter(|&(own, &name)| own != name);
         (report.seam_vertices, report.weld_reach) = (joined.count(), reach);
-        for corner in faces.corners_mut() {
+        for corner in &mut faces.corners {
             *corner = names[*corner as usize];
         }
     }
@@ -106,7 +109,7 @@ pub fn degenerate(triangles: usize) -> Error {
 ///
 /// A face no wider than the reach would vanish, so its corners stay: the surface there is finer than its numbers.
 fn join_seams(positions: &[[f64; 3]], faces: &Faces, reach: f64) -> Option<Vec<u32>> {
-    let mut sides: Vec<[u32; 2]> = Vec::with_capacity(faces.corners().len());
+    let mut sides: Vec<[u32; 2]> = Vec::with_capacity(faces.corners.len());
     for face in faces.iter() {
         let next = face.iter().cycle().skip(1);
         let ends = face.iter().zip(next).filter(|(from, to)| from != to);
@@ -168,46 +171,25 @@ fn number_by_appearance(kept: Vec<[f64; 3]>, triangles: &mut [[u32; 3]]) -> Vec<
     positions
 }
 
-/// Vertices by their place.
 struct Places {
     reach: f64,
-    /// Cells are twice the reach, so that what is within reach of a vertex lies in its cell or in one that it nearly
-    /// touches: mostly one look-up a vertex.
+    /// Cells are twice the reach, so that mostly one is looked at for each vertex.
     cells: SpatialHash<u32>,
     kept: Vec<[f64; 3]>,
 }
 
 impl Places {
-    fn new(low: [f64; 3], reach: f64, vertices: usize) -> Self {
-        Self {
-            reach,
-            cells: SpatialHash::with_origin(low, 2.0 * reach, vertices / 2),
-            kept: Vec::new(),
-        }
-    }
-
     /// The vertex that stands for a position: the earliest within reach, else a new one.
     fn name(&mut self, position: [f64; 3]) -> u32 {
-        let within = |other: &&u32| {
-            crate::vector::distance(self.kept[**other as usize], position) <= self.reach
-        };
-        let earliest = self
-            .cells
-            .touching(position, self.reach)
-            .filter(within)
-            .min();
-        if let Some(&earliest) = earliest {
+        let near = self.cells.touching(position, self.reach);
+        let within = |&&other: &&u32| distance(self.kept[other as usize], position) <= self.reach;
+        if let Some(&earliest) = near.filter(within).min() {
             return earliest;
         }
         let name = self.kept.len() as u32;
         self.kept.push(position);
         self.cells.push(position, name);
         name
-    }
-
-    /// One position for each name.
-    fn into_kept(self) -> Vec<[f64; 3]> {
-        self.kept
     }
 }
 

@@ -5,7 +5,7 @@
 //! Nucleic Acids Res. 41 (2013) D1096-D1103. Its longer list also holds compounds that may well matter to the shape
 //! (lipids, detergents, amino acids, sugars), so those are kept here. Metal ions are kept too.
 
-/// Residue names by what they are.
+/// Residue names by kind of compound.
 const ADDITIVES: [(&str, &[&str]); 7] = [
     (
         "salts",
@@ -44,7 +44,6 @@ const ADDITIVES: [(&str, &[&str]); 7] = [
     ("unknown atoms or ions", &["UNX"]),
 ];
 
-/// Whether a residue name is that of a buffer or cryo additive.
 pub(crate) fn is_additive(residue_name: &str) -> bool {
     ADDITIVES
         .iter()

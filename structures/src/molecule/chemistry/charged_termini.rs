@@ -11,10 +11,9 @@
 //! decide, since many files have chains merged.
 
 use crate::molecule::chemistry::{CARBOXYL, Labels, TERMINI_PKA, amino_terminus};
-use crate::molecule::model::{
-    Atom, GroupKind, MAX_CAP_LENGTH, Molecule, Residue, ResidueKey, squared_distance,
-};
+use crate::molecule::model::{Atom, GroupKind, MAX_CAP_LENGTH, Molecule, Residue, ResidueKey};
 use crate::neighbours::SpatialHash;
+use crate::vector::squared_distance;
 
 /// Longest C-N distance in Å of a peptide bond, with room for poor structures.
 pub(crate) const BOND: f64 = 2.5;
@@ -27,14 +26,12 @@ struct Cap<'a> {
     residue: ResidueKey<'a>,
 }
 
-/// All of them, sorted by place.
 pub(crate) struct Caps<'a> {
     atoms: Vec<Cap<'a>>,
     cells: SpatialHash<usize>,
 }
 
 impl Molecule {
-    /// Charges the termini, and counts gaps.
     pub(crate) fn charge_termini(&self, groups: &[Residue<'_>], ph: f64, labels: &mut Labels) {
         let peptide = groups.iter().filter(|residue| residue.is_peptide());
         let peptide: Vec<&Residue<'_>> = peptide.collect();
@@ -70,7 +67,6 @@ impl Molecule {
         Some(squared_distance(c.position, n.position).sqrt())
     }
 
-    /// Whether two peptide residues in a row belong to different chains.
     fn separate(&self, before: &Residue<'_>, after: &Residue<'_>) -> bool {
         let is_broken = self.distance(before, after).is_some_and(|d| d > BOND);
         let (chain, number) = (before.key.chain, before.key.number);
@@ -132,7 +128,6 @@ impl Molecule {
         })
     }
 
-    /// Atoms that may be bonded to the termini.
     pub(crate) fn caps<'a>(&self, groups: &[Residue<'a>]) -> Caps<'a> {
         let mut atoms = Vec::new();
         for group in groups {

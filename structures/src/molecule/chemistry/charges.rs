@@ -16,7 +16,6 @@ const TABLE: &str = include_str!("charges.txt");
 /// Charges in e by atom name.
 pub(crate) type Charges = &'static [(&'static str, f64)];
 
-/// Rows by their section and name.
 type Sections = HashMap<&'static str, HashMap<&'static str, Vec<(&'static str, f64)>>>;
 
 static CHARGES: LazyLock<Sections> = LazyLock::new(|| {
@@ -90,7 +89,6 @@ const TITRATABLE: [(&str, f64, &str, &str); 7] = [
     ("ARG", 13.8, "ARG", "ARN"),
 ];
 
-/// Charges of a nucleotide.
 pub(crate) fn nucleotide() -> Charges {
     find_or_any("nucleotide", "any")
 }
@@ -121,7 +119,6 @@ pub(crate) fn is_modified(residue_name: &str) -> bool {
     find("side", residue_name).is_some() && !is_amino_acid(residue_name)
 }
 
-/// Charges of a cofactor that is known.
 pub(crate) fn cofactor(residue_name: &str) -> Option<Charges> {
     find("cofactor", residue_name)
 }

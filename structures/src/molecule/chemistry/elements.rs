@@ -21,7 +21,6 @@ pub(crate) struct Element {
     pub(crate) charge: Option<f64>,
 }
 
-/// Kind of an element by what its ions bind.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum ElementKind {
     NonMetal,
@@ -53,7 +52,6 @@ static ELEMENTS: LazyLock<Vec<Element>> = LazyLock::new(|| {
     lines.map(element).collect()
 });
 
-/// An element by its symbol.
 pub(crate) fn element(symbol: &str) -> Option<&'static Element> {
     ELEMENTS.iter().find(|element| element.symbol == symbol)
 }
@@ -68,7 +66,7 @@ pub(crate) fn is_hard(symbol: &str) -> bool {
     element(symbol).is_some_and(|element| element.kind == ElementKind::Hard)
 }
 
-/// Where an atom's name stands in its PDB columns 13 to 16.
+/// Alignment of an atom's name in PDB columns 13 to 16.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum NameColumn {
     /// Column 13 is blank: a one-letter element, where the file keeps to the wwPDB's alignment.
@@ -79,7 +77,6 @@ pub(crate) enum NameColumn {
     Unknown,
 }
 
-/// An element and how it was found.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) struct Resolved {
     /// Symbol as in the periodic table; `D` for deuterium.
@@ -87,7 +84,6 @@ pub(crate) struct Resolved {
     pub(crate) origin: Origin,
 }
 
-/// Source of an element.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Origin {
     /// The element column.
@@ -104,7 +100,7 @@ const UNMISTAKABLE: [&str; 12] = [
     "BR", "CL", "FE", "ZN", "MG", "MN", "SE", "LI", "RU", "RB", "AL", "SI",
 ];
 
-/// The element of an atom, or nothing when neither column nor names tell.
+/// The element of an atom; `None` if neither column nor names show it.
 ///
 /// `aligned` says whether the file keeps to the wwPDB's alignment of atom names, by which a blank column 13 means a
 /// one-letter element (` CA ` carbon, `CA  ` calcium).
@@ -252,7 +248,7 @@ mod tests {
 
     #[test]
     fn alpha_carbon_is_not_calcium() {
-        // Blank column: pdbtbx and others read CA as calcium. Column CA: some programs write it so.
+        // Blank column: some readers take CA for calcium. Column CA: some programs write it so.
         assert_eq!(of("ALA", "CA", "", Blank), ("C", Origin::Derived));
         assert_eq!(of("ALA", "CA", "CA", Filled), ("C", Origin::Corrected));
         assert_eq!(of("CA", "CA", "", Filled), ("Ca", Origin::Derived));

@@ -8,7 +8,8 @@
 use crate::molecule::chemistry::{
     Charges, backbone, cofactor, ion, is_hard, is_metal, known_atom, nucleotide, side_chain_charges,
 };
-use crate::molecule::model::{Atom, GroupKind, Molecule, Residue, residues, squared_distance};
+use crate::molecule::model::{Atom, GroupKind, Molecule, Residue, residues};
+use crate::vector::squared_distance;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

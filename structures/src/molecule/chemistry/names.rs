@@ -6,8 +6,8 @@
 //! - A name of the tables (`ALA`, `HIE`, `CYX`, ...) keeps its meaning, and so does that of a modified residue whose
 //!   charges are known.
 //! - A name that says which amino acid it stands for (D-amino acids of the wwPDB; GROMOS's and AMBER's names, those of
-//!   the termini included) is read so where no atom contradicts. Where it says the charge state, too, the state is
-//!   read: `ASPH` is neutral.
+//!   the termini included) is read so if no atom contradicts, with the charge state that it says:
+//!   `ASPH` is neutral.
 //! - Under any other name a residue with exactly a standard residue's heavy atoms is that residue. The wwPDB gives
 //!   names of their own to molecules with the same atom names that are something else (norvaline has proline's); the
 //!   table has those, and they stay as they are.
@@ -204,7 +204,6 @@ fn by_atoms(heavy: &[&str]) -> Option<&'static str> {
     found.map(|(residue, _)| residue)
 }
 
-/// Whether an atom is hydrogen, or a site without mass.
 fn is_light(name: &str, element: &str) -> bool {
     if matches!(element, "H" | "D" | "T") {
         return true;

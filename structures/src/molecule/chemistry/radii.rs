@@ -49,7 +49,6 @@ pub(crate) fn all_atom_radius(symbol: &str) -> f64 {
     of_element(if is_hydrogen(symbol) { "H" } else { symbol })
 }
 
-/// The class of an atom whose hydrogens are not known.
 fn class_of_element(element: &str) -> Option<&'static RadiusClass> {
     let classes = [&C3H1, &N, &O2H1, &S, &SE, &P];
     classes.into_iter().find(|class| class.element == element)

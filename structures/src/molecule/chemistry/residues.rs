@@ -54,13 +54,11 @@ pub(crate) static SE: RadiusClass = class("Se", "Se", 1.90);
 /// Phosphorus of phosphates.
 pub(crate) static P: RadiusClass = class("P", "P", 1.80);
 
-/// Classes of the table's atoms.
 static CLASSES: [&RadiusClass; 8] = [&C3H0, &C3H1, &C4, &N, &O1H0, &O2H1, &S, &SE];
 
 /// Number of backbone atoms, which come first in every residue of the table.
 const BACKBONE: usize = 5;
 
-/// A heavy atom of an amino acid.
 #[derive(Debug)]
 pub(crate) struct KnownAtom {
     pub(crate) name: &'static str,
@@ -71,9 +69,7 @@ pub(crate) struct KnownAtom {
     pub(crate) kind: u8,
 }
 
-/// The table.
 struct AminoAcids {
-    /// Residues with their atoms.
     residues: Vec<(&'static str, Vec<KnownAtom>)>,
     kinds: Vec<&'static str>,
 }
@@ -134,7 +130,6 @@ pub(crate) fn parent(residue_name: &str) -> &str {
     }
 }
 
-/// The residues of the table, with their side chains.
 pub(crate) fn side_chains() -> impl Iterator<Item = (&'static str, &'static [KnownAtom])> {
     let residues = AMINO_ACIDS.residues.iter();
     residues.map(|(name, atoms)| (*name, &atoms[BACKBONE..]))
@@ -162,18 +157,15 @@ fn atoms(residue_name: &str) -> Option<&'static [KnownAtom]> {
     found.map(|(_, atoms)| atoms.as_slice())
 }
 
-/// Heavy side-chain atoms of a standard amino acid.
 pub(crate) fn side_chain(residue_name: &str) -> Option<&'static [KnownAtom]> {
     atoms(residue_name).map(|atoms| &atoms[BACKBONE..])
 }
 
-/// A heavy atom of a standard amino acid.
 pub(crate) fn known_atom(residue_name: &str, atom_name: &str) -> Option<&'static KnownAtom> {
     let name = standard_atom_name(residue_name, atom_name);
     atoms(residue_name)?.iter().find(|atom| atom.name == name)
 }
 
-/// Radius class of a heavy atom of a standard amino acid.
 pub(crate) fn amino_acid_type(residue_name: &str, atom_name: &str) -> Option<&'static RadiusClass> {
     known_atom(residue_name, atom_name).map(|atom| atom.class)
 }

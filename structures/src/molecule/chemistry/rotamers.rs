@@ -15,7 +15,6 @@ use std::sync::LazyLock;
 
 use crate::molecule::chemistry::side_chain;
 
-/// Most chi angles of a residue.
 pub(crate) const MAX_CHI: usize = 4;
 
 /// The atoms after CB in the chain of a residue's chi angles. There are as many as angles.
@@ -70,7 +69,6 @@ impl ChiAngles {
         })
     }
 
-    /// How many angles there are.
     pub(crate) fn count(&self) -> usize {
         self.chain.len() - 3
     }
@@ -97,7 +95,6 @@ pub(crate) fn period(residue: &str, k: usize) -> f64 {
 /// Lines of `#`, a header, then residue, phi, psi, probability in thousandths and the angles, in degrees.
 const TABLE: &str = include_str!("rotamers.csv");
 
-/// Spacing of the nodes, in degrees.
 const STEP: i32 = 40;
 /// Lowest node of phi and of psi, in degrees.
 const LOWEST: [i32; 2] = [-180, -160];
@@ -117,7 +114,6 @@ pub struct Rotamer {
     pub chi: [f64; MAX_CHI],
 }
 
-/// The rotamers of a residue by node, in degrees.
 type Nodes = HashMap<[i32; 2], Vec<Rotamer>>;
 
 static ROTAMERS: LazyLock<HashMap<&'static str, Nodes>> = LazyLock::new(|| {

@@ -6,8 +6,9 @@ use std::collections::BTreeSet;
 use serde::Serialize;
 
 use crate::molecule::chemistry::{BOND, Caps};
-use crate::molecule::model::{Atom, Molecule, Residue, ResidueKey, residues, squared_distance};
+use crate::molecule::model::{Atom, Molecule, Residue, ResidueKey, residues};
 use crate::neighbours::SpatialHash;
+use crate::vector::squared_distance;
 
 /// Largest distance of adjacent residues, in Å.
 const STRETCHED: f64 = 3.8;
@@ -31,7 +32,6 @@ pub(crate) struct Chain<'a> {
     pub ends: [Option<[f64; 3]>; 2],
 }
 
-/// Residues that are missing in a chain.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Gap {
     /// The residue that follows the gap, by its place in the chain.
@@ -45,7 +45,7 @@ pub(crate) struct Gap {
 /// Junction of two peptide residues in a row.
 enum Between {
     Bond,
-    /// So many residues, between a C and an N.
+    /// This many residues, between a C and an N.
     Gap(i64, [[f64; 3]; 2]),
     /// The end of one chain and the beginning of another.
     Ends,
@@ -103,7 +103,7 @@ impl Molecule {
             && spacing <= STRETCHED * (counted + 1) as f64
     }
 
-    /// Where an end of a chain is, unless something is bonded to it.
+    /// Position of a chain's end, unless something is bonded to it.
     fn free_end(&self, caps: &Caps<'_>, residue: &Residue<'_>, name: &str) -> Option<[f64; 3]> {
         let end = self.atom(residue, name)?;
         (!self.capped(caps, residue, name)).then_some(end.position)
@@ -153,7 +153,7 @@ impl Chain<'_> {
     }
 }
 
-/// Longest distance in Å of a terminal atom from what is bonded to it.
+/// Longest distance in Å of a terminal atom from an atom bonded to it.
 pub(crate) const MAX_CAP_LENGTH: f64 = 1.7;
 
 /// An end that a selection of residues made of a bond: a residue that is kept, and its atom whose partner is not.
@@ -162,7 +162,6 @@ pub(crate) struct CutEnd {
     chain: String,
     number: i64,
     insertion: Option<char>,
-    /// N or C.
     atom: &'static str,
 }
 
@@ -201,15 +200,14 @@ pub(crate) fn cut_ends(kept: &[Atom], left_out: &[Atom]) -> Vec<CutEnd> {
 
 /// Largest number of residues from a terminus that count as near it.
 ///
-/// The second constant is the largest share of a chain, one residue in so many: of small proteins hardly any is
+/// The second constant is the largest share of a chain, one residue in this many: of small proteins hardly any is
 /// flexible.
 const NEAR: usize = 8;
 const ONE_IN: usize = 16;
 
 /// Residues near the termini of a molecule's chains, and near gaps: they move more than the rest of a body.
 ///
-/// What a crystal resolves of them is one place of many, and wrong poses lie against that place more often than right
-/// ones.
+/// A crystal resolves one of many places, and wrong poses touch that place more often than right ones.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Termini {
     /// How many residues.

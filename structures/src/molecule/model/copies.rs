@@ -8,9 +8,8 @@ use std::collections::HashMap;
 const SHARED: usize = 3;
 
 impl Molecule {
-    /// Positions of the CA and P atoms that all of so many copies have, copy by copy in the same order (Å). Copies
-    /// follow one another in the file, each with all its chains in the same order, as complexes are written; residues
-    /// are matched by their number.
+    /// Positions of the CA and P atoms that all copies have, copy by copy in the same order (Å). Copies follow one another
+    /// in the file, each with all its chains in the same order, as complexes are written; residues match by number.
     ///
     /// # Errors
     /// The chains do not divide into that many copies, or chains in one place of each copy are not alike.

@@ -51,10 +51,8 @@ const GLYCANS: [&str; 30] = [
     "LAT", "TRE", "NGS", "M6P",
 ];
 
-/// Place of a residue in a file: chain, number and insertion code.
 pub(crate) type Place<'a> = (&'a str, i64, Option<char>);
 
-/// Key of a residue in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(crate) struct ResidueKey<'a> {
     pub(crate) chain: &'a str,
@@ -64,12 +62,10 @@ pub(crate) struct ResidueKey<'a> {
 }
 
 impl<'a> ResidueKey<'a> {
-    /// Chain, number and insertion code.
     pub(crate) fn place(self) -> Place<'a> {
         (self.chain, self.number, self.insertion)
     }
 
-    /// The number with the insertion code, e.g. `52A`.
     pub(crate) fn number_text(self) -> String {
         number_text(self.number, self.insertion)
     }
@@ -87,7 +83,6 @@ pub(crate) fn number_text(number: i64, insertion: Option<char>) -> String {
     number.to_string() + insertion.map_or(String::new(), String::from).as_str()
 }
 
-/// The residue that an atom belongs to.
 pub(crate) fn residue_key(atom: &Atom) -> ResidueKey<'_> {
     ResidueKey {
         chain: &atom.chain,
@@ -128,7 +123,6 @@ impl Residue<'_> {
         self.atoms.iter().map(|&index| &atoms[index])
     }
 
-    /// Whether this is one of a peptide chain.
     pub(crate) fn is_peptide(&self) -> bool {
         matches!(self.kind, GroupKind::AminoAcid | GroupKind::ModifiedResidue)
     }

@@ -1,4 +1,4 @@
-//! Data of a molecule: atoms, residues, chains, and what follows from their places.
+//! Data of a molecule: atoms, residues, chains, and quantities that follow from their places.
 
 mod chains;
 mod copies;
@@ -30,7 +30,5 @@ pub(crate) use self::chains::{Chain, CutEnd, Gap, MAX_CAP_LENGTH, cut_ends};
 pub(crate) use self::groups::{
     Place, Residue, ResidueKey, number_text, residue_key, residue_runs, residues,
 };
-pub(crate) use self::molecule::{
-    agreeing, count, cross, dot, examples, minus, show_chain, squared_distance,
-};
+pub(crate) use self::molecule::{agreeing, count, examples, show_chain};
 pub(crate) use self::residue_selection::Picked;

@@ -64,11 +64,6 @@ impl Atom {
     }
 }
 
-/// Square of the distance of two positions (Å²).
-pub(crate) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
-    (0..3).map(|axis| (a[axis] - b[axis]).powi(2)).sum()
-}
-
 /// A structure as docked: its kept atoms in file order.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Molecule {
@@ -140,23 +135,4 @@ pub(crate) fn examples<T: AsRef<str>>(items: &[T], shown: usize) -> String {
     let first: Vec<&str> = items.iter().take(shown).map(AsRef::as_ref).collect();
     let more = if items.len() > shown { ", ..." } else { "" };
     first.join(", ") + more
-}
-
-/// Difference of two vectors.
-pub(crate) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
-}
-
-/// Scalar product.
-pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
-    a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
-}
-
-/// Vector product.
-pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
-    [
-        a[1] * b[2] - a[2] * b[1],
-        a[2] * b[0] - a[0] * b[2],
-        a[0] * b[1] - a[1] * b[0],
-    ]
 }

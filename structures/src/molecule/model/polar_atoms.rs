@@ -1,7 +1,7 @@
 //! Atoms that take part in hydrogen bonds, and the direction in which each does.
 //!
 //! Hydrogens are mostly absent from files, so a bond is judged by its heavy atoms: by their distance, and by the
-//! direction in which each points away from what it is bonded to. Amino acids give and take by the hydrogens that their
+//! direction in which each points away from its bonded atoms. Amino acids give and take by the hydrogens that their
 //! atoms carry (Baker & Hubbard, Prog. Biophys. Mol. Biol. 44 (1984) 97-179). Histidine's nitrogens do both, because
 //! files do not show its protons. So do oxygens and nitrogens of other molecules.
 

@@ -48,7 +48,7 @@ pub struct ReadReport {
     pub chains: Vec<ChainCount>,
     /// Groups kept that are not standard amino acids, by name.
     pub groups: Vec<GroupCount>,
-    /// Standard amino acids under other names, and what they were read as.
+    /// Standard amino acids under other names, and the names that they were read as.
     pub other_names: Vec<OtherName>,
     /// What was dropped, by kind; kinds with nothing dropped are left out.
     pub dropped: Vec<Dropped>,
@@ -66,10 +66,10 @@ pub struct ReadReport {
     /// Ends that a selection of residues cut out of chains: they stand for bonds.
     #[serde(skip)]
     pub(crate) cut_ends: Vec<CutEnd>,
-    /// Why the B column is taken for no pLDDT where a least one is given.
+    /// Why the B column is taken for no pLDDT although a least one is given.
     #[serde(skip)]
     pub no_confidence: Option<String>,
-    /// What the user should know before trusting the result.
+    /// Facts to know before trusting the result.
     pub warnings: Vec<String>,
 }
 
@@ -161,7 +161,7 @@ pub struct Dropped {
     pub names: BTreeMap<String, usize>,
 }
 
-/// Counts of what was altered on reading.
+/// Counts of changes on reading.
 #[derive(Clone, Debug, Default, PartialEq, Eq, Serialize)]
 pub struct Altered {
     /// Atoms whose blank element column was filled from residue and atom name.
@@ -192,7 +192,7 @@ pub struct AlternateChoice {
 }
 
 impl ReadReport {
-    /// Counts atoms as dropped; `name` says what they belong to.
+    /// Counts atoms as dropped, under the name of their residue or chain.
     pub(crate) fn drop_atoms(&mut self, kind: DropKind, name: &str, atoms: usize) {
         let at = self.dropped.iter().position(|entry| entry.kind == kind);
         let at = at.unwrap_or(self.dropped.len());
@@ -213,7 +213,6 @@ impl ReadReport {
         }
     }
 
-    /// Counts the residues that are kept.
     pub(crate) fn count(&mut self, residues: &[Residue<'_>]) {
         let mut places: HashMap<&str, usize> = HashMap::new();
         let mut groups: BTreeMap<(GroupKind, &str), [usize; 2]> = BTreeMap::new();
@@ -274,7 +273,7 @@ pub struct BuiltAssembly {
     pub chains: usize,
     /// Such chains in the file.
     pub chains_in_file: usize,
-    /// Copies of atoms left out because they coincide with another copy of the same: they lie on an axis of symmetry.
+    /// Copies of atoms left out because they coincide with another copy of the same: they are on an axis of symmetry.
     pub on_axes: usize,
 }
 
@@ -283,7 +282,7 @@ pub struct BuiltAssembly {
 pub struct JoinedModels {
     /// Models that have atoms.
     pub models: usize,
-    /// Copies of atoms left out because they coincide with the same atom of an earlier model: they lie on an axis of
+    /// Copies of atoms left out because they coincide with the same atom of an earlier model: they are on an axis of
     /// symmetry.
     pub on_axes: usize,
 }
@@ -318,7 +317,7 @@ fn list(items: impl Iterator<Item = String>) -> String {
     first(8, items)
 }
 
-/// Joins the first so many of a list and counts the rest.
+/// Joins the first `shown` of a list and counts the rest.
 fn first(shown: usize, items: impl Iterator<Item = String>) -> String {
     let items: Vec<String> = items.collect();
     let rest = items.len().saturating_sub(shown);
@@ -419,7 +418,7 @@ fn line(f: &mut fmt::Formatter<'_>, head: &str, text: String) -> fmt::Result {
 }
 
 impl ReadReport {
-    /// The report in a line, without warnings: the file's name, what is kept, and what is dropped or in doubt.
+    /// The report in a line, without warnings: the file's name, and parts that are kept, dropped or in doubt.
     pub fn brief(&self) -> String {
         const SHOWN: usize = 3;
         let file = Path::new(&self.file);
@@ -499,7 +498,6 @@ fn show_dropped(dropped: &Dropped) -> String {
 }
 
 impl Altered {
-    /// What was altered, in words.
     fn show(&self) -> String {
         let counted = |number: usize, what: &str, verb: &str| {
             (number, format!("{} {verb}", count(number, what)))

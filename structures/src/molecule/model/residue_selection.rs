@@ -48,7 +48,6 @@ impl std::fmt::Display for Range {
 }
 
 impl Range {
-    /// Whether a residue is among them.
     fn holds(self, number: i64, insertion: Option<char>) -> bool {
         match self {
             Self::Chain => true,
@@ -134,14 +133,13 @@ pub(crate) struct Picked {
 }
 
 impl Picked {
-    /// Whether a residue of the chain is among them.
     pub(crate) fn holds(&self, number: i64, insertion: Option<char>) -> bool {
         self.residues.holds(number, insertion)
     }
 }
 
 impl ResidueSelection {
-    /// Its parts in the order written, each as a selection of its own. A part keeps the chain that it goes on with.
+    /// Its parts in the order written, each as a selection. A part keeps the chain that it goes on with.
     pub fn parts(&self) -> impl Iterator<Item = ResidueSelection> + '_ {
         self.0.iter().map(|part| Self(vec![part.clone()]))
     }
@@ -223,7 +221,6 @@ impl Molecule {
         in_words(&self.numbers_by_chain())
     }
 
-    /// Smallest and largest residue number of each chain.
     fn numbers_by_chain(&self) -> BTreeMap<String, [i64; 2]> {
         let mut chains = BTreeMap::new();
         for atom in &self.atoms {

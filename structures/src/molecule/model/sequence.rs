@@ -5,7 +5,7 @@ use std::ops::Range;
 use crate::molecule::chemistry::one_letter;
 use crate::molecule::model::{Molecule, Residue, residue_runs};
 
-/// A run of amino acids that stand in one chain of a file, one after another.
+/// A run of amino acids in one chain of a file, one after another.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PeptideChain<'a> {
     /// The author's name of the chain; may be empty.
@@ -35,8 +35,8 @@ impl PeptideChain<'_> {
 impl Molecule {
     /// The peptide chains in file order, modified amino acids included.
     ///
-    /// A new chain begins where the name changes or another kind of residue stands between; where numbers begin again
-    /// under one name, it goes on.
+    /// A new chain begins if the name changes or another kind of residue is between; it goes on if numbers begin again
+    /// under one name.
     pub fn peptide_chains(&self) -> Vec<PeptideChain<'_>> {
         let runs = residue_runs(&self.atoms);
         runs.chunk_by(|a, b| a.key.chain == b.key.chain && a.is_peptide() == b.is_peptide())

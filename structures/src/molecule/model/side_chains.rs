@@ -1,4 +1,4 @@
-//! Side chains that turn: the bonds, the angles, and what keeps a side chain as it is.
+//! Side chains that turn: their bonds and angles, and reasons for a side chain to stay as it is.
 
 use std::collections::HashMap;
 
@@ -7,13 +7,12 @@ use serde::Serialize;
 use crate::molecule::chemistry::{
     BOND, ChiAngles, backbone_type, is_metal, parent, standard_atom_name,
 };
-use crate::molecule::model::{
-    Atom, Molecule, Residue, cross, dot, minus, residues, squared_distance,
-};
+use crate::molecule::model::{Atom, Molecule, Residue, residues};
 use crate::neighbours::{CellList, Member};
+use crate::vector::{cross, dot, norm, squared_distance, subtract};
 
-/// phi and psi in radians where an end of a chain leaves one undefined: those of an extended chain, -75 and 145
-/// degrees.
+/// phi and psi in radians for the end of a chain, which leaves one undefined: -75 and 145 degrees, as of an extended
+/// chain.
 const EXTENDED: [f64; 2] = [-1.309, 2.531];
 
 /// The side chain of an amino acid with chi angles.
@@ -181,7 +180,6 @@ impl Molecule {
             .then_some(HeldSideChain::AlternateLocations)
     }
 
-    /// The turning bonds of a complete side chain.
     fn turning_bonds(
         &self,
         residue: &Residue<'_>,
@@ -264,7 +262,6 @@ impl HeldSideChain {
 /// A heavy atom that a side chain may be bonded to: its place in the molecule.
 struct SideChainBonds<'a> {
     atoms: &'a [Atom],
-    /// Which residue each atom belongs to.
     residue_of: Vec<usize>,
     cells: CellList<usize>,
     origin: [f64; 3],
@@ -284,7 +281,7 @@ impl<'a> SideChainBonds<'a> {
         let all = atoms.iter().enumerate();
         let heavy = all.filter(|(_, atom)| !atom.is_hydrogen());
         let members = heavy.map(|(item, atom)| Member {
-            position: minus(atom.position, origin),
+            position: subtract(atom.position, origin),
             item,
         });
         Self {
@@ -301,7 +298,7 @@ impl<'a> SideChainBonds<'a> {
         let mut held: Option<HeldSideChain> = None;
         let own = residue.atoms.first().map(|&first| self.residue_of[first]);
         for atom in side_chain.iter().map(|&index| &self.atoms[index]) {
-            let center = minus(atom.position, self.origin);
+            let center = subtract(atom.position, self.origin);
             self.cells.visit_within(center, METAL, |&other, _| {
                 if Some(self.residue_of[other]) != own
                     && let Some(reason) = bond(atom, &self.atoms[other])
@@ -314,7 +311,7 @@ impl<'a> SideChainBonds<'a> {
     }
 }
 
-/// What bonds an atom of a side chain to an atom of another residue.
+/// Bond of a side chain's atom to an atom of another residue.
 fn bond(atom: &Atom, other: &Atom) -> Option<HeldSideChain> {
     let square = squared_distance(atom.position, other.position);
     let within = |reach: f64| square <= reach * reach;
@@ -333,23 +330,23 @@ fn bond(atom: &Atom, other: &Atom) -> Option<HeldSideChain> {
 }
 
 /// Dihedral angle in radians, -pi to pi, of four places: clockwise is positive when looking from the second to the
-/// third (IUPAC-IUB, J. Mol. Biol. 52 (1970) 1-17). Zero where three of them lie in a line.
+/// third (IUPAC-IUB, J. Mol. Biol. 52 (1970) 1-17). Zero if three of them are in line.
 fn dihedral([a, b, c, d]: [[f64; 3]; 4]) -> f64 {
-    let (first, axis, last) = (minus(b, a), minus(c, b), minus(d, c));
+    let (first, axis, last) = (subtract(b, a), subtract(c, b), subtract(d, c));
     let (left, right) = (cross(first, axis), cross(axis, last));
-    (dot(axis, axis).sqrt() * dot(first, right)).atan2(dot(left, right))
+    (norm(axis) * dot(first, right)).atan2(dot(left, right))
 }
 
 /// The place of a point after a right-handed turn by `angle` (radians) about the axis from `from` to `to`; the point
 /// itself where the two coincide. Source: Rodrigues' formula.
 fn turned(point: [f64; 3], from: [f64; 3], to: [f64; 3], angle: f64) -> [f64; 3] {
-    let axis = minus(to, from);
-    let length = dot(axis, axis).sqrt();
+    let axis = subtract(to, from);
+    let length = norm(axis);
     if length == 0.0 {
         return point;
     }
     let axis = axis.map(|x| x / length);
-    let arm = minus(point, from);
+    let arm = subtract(point, from);
     let (sin, cos) = angle.sin_cos();
     let across = cross(axis, arm);
     let along = dot(axis, arm) * (1.0 - cos);
@@ -358,7 +355,7 @@ fn turned(point: [f64; 3], from: [f64; 3], to: [f64; 3], angle: f64) -> [f64; 3]
 
 /// Whether an amino acid is of the L form: seen from CA with the side chain up, CO-R-N read clockwise.
 fn is_left_handed(n: [f64; 3], ca: [f64; 3], c: [f64; 3], cb: [f64; 3]) -> bool {
-    dot(cross(minus(n, ca), minus(c, ca)), minus(cb, ca)) > 0.0
+    dot(cross(subtract(n, ca), subtract(c, ca)), subtract(cb, ca)) > 0.0
 }
 
 #[cfg(test)]

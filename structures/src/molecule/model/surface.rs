@@ -1,21 +1,21 @@
 //! Solvent-accessible surface area of each atom (Lee & Richards, J. Mol. Biol. 55 (1971) 379-400), by counting points
 //! on the atoms' expanded spheres that no other sphere covers (Shrake & Rupley, J. Mol. Biol. 79 (1973) 351-371).
 
-use crate::molecule::model::{Atom, Molecule, squared_distance};
-use crate::neighbours::{CoveringBalls, SpatialHash};
+use crate::molecule::model::{Atom, Molecule};
+use crate::neighbours::SpatialHash;
+use crate::vector::{along, squared_distance};
 use std::collections::HashSet;
 
 /// Radius of the water probe, in Å.
 pub const PROBE: f64 = 1.4;
 
-/// Most atoms in the 27 cells about one that are gone through: protein has about 750, hydrogens included. Where there
-/// are more, a tree finds what covers a point.
+/// Most neighbours of an atom that are gathered: of a protein's atoms none has as many. In a crowd nearly any neighbour
+/// covers a point, so that the others are rarely looked at.
 const CROWD: usize = 2048;
 
 impl Molecule {
-    /// Accessible area of each atom in Å^2, from `points` points a sphere (a spiral of Fibonacci); 200 give a total
-    /// within about 1%. Of atoms with one position and one radius the first has the area of all. O(atoms x points x
-    /// neighbours), and of crowded atoms O(atoms x points x log atoms).
+    /// Accessible area of each atom in Å^2, from `points` points on each sphere ([`spiral`]); 200 give a total within
+    /// about 1%. Of atoms with one position and one radius the first has the area of all. O(atoms x points x neighbours).
     pub fn accessible_areas(&self, points: usize) -> Vec<f64> {
         let sphere = spiral(points.max(1));
         let grown: Vec<f64> = self.atoms.iter().map(|atom| atom.radius + PROBE).collect();
@@ -25,46 +25,33 @@ impl Molecule {
         for &index in &distinct {
             cells.push(self.atoms[index].position, index);
         }
-        let mut tree = None;
         let mut near: Vec<usize> = Vec::new();
         let mut areas = vec![0.0; self.atoms.len()];
-        for (place, &index) in distinct.iter().enumerate() {
+        for &index in &distinct {
             let (center, radius) = (self.atoms[index].position, grown[index]);
-            let on_sphere = |direction: &[f64; 3]| -> [f64; 3] {
-                std::array::from_fn(|axis| center[axis] + radius * direction[axis])
+            let others = || cells.around(center).filter(|&&other| other != index);
+            let is_within = |point: [f64; 3], other: usize, reach: f64| {
+                squared_distance(point, self.atoms[other].position) < reach * reach
             };
             near.clear();
-            let free = if cells.around(center).nth(CROWD).is_some() {
-                let balls = || {
-                    let ball = |&other: &usize| (self.atoms[other].position, grown[other]);
-                    CoveringBalls::new(distinct.iter().map(ball))
-                };
-                let tree = tree.get_or_insert_with(balls);
-                let points = sphere.iter().map(on_sphere);
-                points.filter(|&point| !tree.covers(point, place)).count()
-            } else {
-                near.extend(cells.around(center).copied().filter(|&other| {
-                    let touch = radius + grown[other];
-                    let at = self.atoms[other].position;
-                    other != index && squared_distance(center, at) < touch * touch
-                }));
-                let free = sphere.iter().map(on_sphere).filter(|&point| {
-                    near.iter().all(|&other| {
-                        squared_distance(point, self.atoms[other].position)
-                            >= grown[other] * grown[other]
-                    })
-                });
-                free.count()
+            let touching =
+                others().filter(|&&other| is_within(center, other, radius + grown[other]));
+            near.extend(touching.take(CROWD));
+            let is_free = |direction: &&[f64; 3]| {
+                let point = along(center, radius, **direction);
+                let covers = |&other: &usize| is_within(point, other, grown[other]);
+                !near.iter().any(covers) && (near.len() < CROWD || !others().any(covers))
             };
+            let free = sphere.iter().filter(is_free).count();
             let share = free as f64 / sphere.len() as f64;
             areas[index] = 4.0 * std::f64::consts::PI * radius * radius * share;
         }
         areas
     }
 
-    /// Accessible area in Å^2 that this molecule and `other`, where they stand, take from each other: of this one, and
-    /// of the other. `points` a sphere as in [`Molecule::accessible_areas`]; the same points are used alone and
-    /// together, so that only those near the interface count.
+    /// Accessible area in Å^2 that this molecule and `other`, in one frame, take from each other: of this one, and of
+    /// the other. The same `points` on each sphere are used alone and together, so that only those near the interface
+    /// count.
     pub fn buried_areas(&self, other: &Molecule, points: usize) -> [f64; 2] {
         let atoms = self.atoms.iter().chain(&other.atoms).cloned().collect();
         let together = Molecule::new(atoms, self.format).accessible_areas(points);
@@ -152,7 +139,7 @@ mod tests {
         assert!((area - exact).abs() < 0.1 * exact, "{area}");
     }
 
-    /// Both ways to what covers a point find the same, point by point.
+    /// A crowd has the same area as by every pair, point by point.
     #[test]
     fn a_crowd_has_the_area_that_every_pair_gives() {
         let place = |step: f64, i: usize| 6.0 * (step * i as f64).sin();

@@ -1,18 +1,17 @@
 //! Residues that a chain has and its file does not resolve, and conformers of these segments.
 //!
 //! An unresolved loop bridges a gap in the chain, and termini move or go on beyond what is resolved. A docked partner
-//! meets them. Their places are not known, so many conformers are sampled for each segment, clear of the body and of
-//! themselves. Where all conformers pass the space is filled; where few pass it is mostly free.
+//! meets them. Their places are not known. Many conformers are sampled for each segment, clear of the body and of
+//! themselves: a place that all of them pass is filled, one that few pass is mostly free.
 
 use rand_pcg::Pcg32;
 use rand_pcg::rand_core::Rng;
 use serde::{Serialize, Serializer};
 
 use crate::Conformers;
-use crate::molecule::model::{
-    Atom, Chain, Gap, Molecule, Residue, cross, minus, residues, squared_distance,
-};
+use crate::molecule::model::{Atom, Chain, Gap, Molecule, Residue, residues};
 use crate::neighbours::SpatialHash;
+use crate::vector::{along, cross, dot, norm, squared_distance, subtract};
 
 /// Residues sampled beyond a terminus: as many as count as flexible on its resolved side.
 const PAST_END: usize = 8;
@@ -72,13 +71,11 @@ impl Molecule {
         found
     }
 
-    /// Conformers beyond a terminus.
     fn past(&self, sampler: &LoopSampler, residue: &Residue<'_>, end: &str) -> Option<Conformers> {
         let frame = self.frame(residue, end)?;
         sampler.traces(frame, &residue.atoms, None, PAST_END)
     }
 
-    /// Conformers across a gap.
     fn bridge(&self, sampler: &LoopSampler, chain: &Chain<'_>, gap: &Gap) -> Option<Conformers> {
         let (before, after) = (chain.residues[gap.after - 1], chain.residues[gap.after]);
         let frame = self.frame(before, "C")?;
@@ -141,7 +138,6 @@ struct LoopSampler {
     cells: SpatialHash<usize>,
 }
 
-/// Data that all trials of one segment share.
 struct Trace<'a> {
     sampler: &'a LoopSampler,
     frame: &'a Conformers,
@@ -207,17 +203,18 @@ impl Trace<'_> {
             let last = trace.last().copied().unwrap_or([0.0; 3]);
             let step = if trace.is_empty() { FIRST } else { NEXT };
             let room = (0..tries).find_map(|_| {
-                let along = unit(random);
-                let next: [f64; 3] = std::array::from_fn(|axis| last[axis] + step * along[axis]);
-                let bends = direction.is_none_or(|before| turns(before, along));
+                let unit = unit(random);
+                let next = along(last, step, unit);
+                let bends =
+                    direction.is_none_or(|before| (TURN[0]..=TURN[1]).contains(&dot(before, unit)));
                 (bends && self.closes(next, trace.len()) && self.is_free(next, &trace))
-                    .then_some((next, along))
+                    .then_some((next, unit))
             });
-            let Some((next, along)) = room else {
+            let Some((next, unit)) = room else {
                 break;
             };
             // The first step is no line between two CA atoms.
-            direction = (!trace.is_empty()).then_some(along);
+            direction = (!trace.is_empty()).then_some(unit);
             trace.push(next);
         }
         trace
@@ -250,12 +247,6 @@ impl Trace<'_> {
     }
 }
 
-/// Whether a chain may bend so from one step to the next.
-fn turns(before: [f64; 3], along: [f64; 3]) -> bool {
-    let cosine: f64 = before.iter().zip(&along).map(|(a, b)| a * b).sum();
-    (TURN[0]..=TURN[1]).contains(&cosine)
-}
-
 /// A unit vector, uniform over all directions.
 fn unit(random: &mut Pcg32) -> [f64; 3] {
     let mut share = || f64::from(random.next_u32()) / f64::from(u32::MAX);
@@ -268,13 +259,13 @@ fn unit(random: &mut Pcg32) -> [f64; 3] {
 /// Axes of a right-handed frame: from `first` on to `origin`, and across to where `other` lies; `None` if all are on
 /// one line.
 fn axes(origin: [f64; 3], first: [f64; 3], other: [f64; 3]) -> Option<[[f64; 3]; 3]> {
-    let x = normalized(minus(origin, first))?;
-    let z = normalized(cross(x, minus(other, first)))?;
+    let x = normalized(subtract(origin, first))?;
+    let z = normalized(cross(x, subtract(other, first)))?;
     Some([x, cross(z, x), z])
 }
 
 fn normalized(vector: [f64; 3]) -> Option<[f64; 3]> {
-    let length = squared_distance(vector, [0.0; 3]).sqrt();
+    let length = norm(vector);
     (length > 1e-3).then(|| vector.map(|x| x / length))
 }
 

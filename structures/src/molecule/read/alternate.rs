@@ -2,10 +2,9 @@
 
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
-use crate::molecule::model::{
-    AlternateChoice, Atom, DropKind, Place, number_text, residue_key, squared_distance,
-};
+use crate::molecule::model::{AlternateChoice, Atom, DropKind, Place, number_text, residue_key};
 use crate::molecule::read::{AlternateLocation, Drops};
+use crate::vector::squared_distance;
 
 /// A position in a chain. The residue's name is left out: alternate locations may differ in it (microheterogeneity), and
 /// one choice must hold for both names.
@@ -26,12 +25,9 @@ const MAX_BACKBONE_DISPLACEMENT: f64 = 2.0;
 /// 60, and more than one atom a letter is a mistake of the file.
 const MAX_OF_NAME: usize = 1000;
 
-/// The lettered atoms of a residue.
 #[derive(Default)]
 struct Lettered<'a> {
-    /// Letters by the residue's name.
     letters: HashMap<&'a str, BTreeSet<char>>,
-    /// Atoms with their letters by the atom's name.
     of_name: HashMap<&'a str, Vec<(&'a Atom, char)>>,
 }
 
@@ -48,9 +44,9 @@ impl<'a> Lettered<'a> {
 
 /// The locations of atoms that have no letter beside lettered atoms of their residue, by index.
 ///
-/// Where a lettered atom of the same name is elsewhere, they are the locations of the letters that lack that name:
-/// their letter was left out. Else it is the blank location. The whole residue belongs to that if letters have another
-/// residue on its backbone.
+/// If a lettered atom of the same name is elsewhere, they are the locations of the letters that lack that name: their
+/// letter was left out. Else it is the blank location. The whole residue belongs to that if letters have another residue
+/// on its backbone.
 fn unnamed_alternatives(atoms: &[Atom]) -> HashMap<usize, Vec<char>> {
     let mut lettered: HashMap<Place<'_>, Lettered<'_>> = HashMap::new();
     for atom in atoms {

@@ -1,4 +1,4 @@
-//! Biological assemblies: the molecule as it works, built from the copies that a file says of its chains.
+//! Biological assemblies: the working molecule, built of copies of the file's chains.
 //!
 //! The file of a crystal structure holds the asymmetric unit, which may be half of a dimer or four copies of a monomer.
 //! The file says which chains, moved how, make the biological assembly. The first copy of a chain keeps its name and the
@@ -12,6 +12,7 @@ use crate::molecule::model::{Atom, BuiltAssembly, DropKind, count};
 use crate::molecule::read::mmcif::Row;
 use crate::molecule::read::models::Images;
 use crate::molecule::read::{Drops, Record, is_place, number};
+use crate::motion::Motion;
 
 /// Most atoms of an assembly: the largest capsids have some ten million.
 const MAX_ATOMS: usize = 50_000_000;
@@ -19,52 +20,15 @@ const MAX_ATOMS: usize = 50_000_000;
 /// Most copies that one row of an mmCIF file may request.
 const MAX_COPIES: usize = 100_000;
 
-/// A motion of the file's coordinates, x -> R x + t.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Operator {
-    /// R, row by row.
-    rotation: [[f64; 3]; 3],
-    /// t, in Å.
-    shift: [f64; 3],
-}
-
-impl Operator {
-    /// Leaves everything in place.
-    const IDENTITY: Self = Self {
-        rotation: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
-        shift: [0.0; 3],
-    };
-
-    fn turned(&self, x: [f64; 3]) -> [f64; 3] {
-        self.rotation
-            .map(|row| row[0] * x[0] + row[1] * x[1] + row[2] * x[2])
-    }
-
-    fn moved(&self, x: [f64; 3]) -> [f64; 3] {
-        let turned = self.turned(x);
-        [0, 1, 2].map(|axis| turned[axis] + self.shift[axis])
-    }
-
-    /// `first`, then this.
-    fn after(&self, first: &Self) -> Self {
-        let columns = [0, 1, 2].map(|column| self.turned(first.rotation.map(|row| row[column])));
-        Self {
-            rotation: [0, 1, 2].map(|row| columns.map(|column| column[row])),
-            shift: self.moved(first.shift),
-        }
-    }
-}
-
 /// Chains of an assembly that are moved alike.
 #[derive(Clone, Debug, PartialEq)]
 struct Part {
     /// Names of the chains, in mmCIF the archive's (`label_asym_id`).
     chains: Vec<String>,
     /// A copy of all of them for each.
-    operators: Vec<Operator>,
+    operators: Vec<Motion>,
 }
 
-/// One biological assembly.
 #[derive(Clone, Debug, PartialEq)]
 struct Assembly {
     /// Its name, mostly a number from 1 on.
@@ -72,16 +36,14 @@ struct Assembly {
     parts: Vec<Part>,
 }
 
-/// Assemblies that a file describes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Assemblies {
     list: Vec<Assembly>,
-    /// 1-based line and what is wrong there, where some cannot be understood.
+    /// 1-based line and fault of the first that cannot be understood.
     broken: Option<(Option<usize>, String)>,
 }
 
 impl Assemblies {
-    /// Whether the file describes none.
     pub(crate) fn is_empty(&self) -> bool {
         self.list.is_empty()
     }
@@ -107,7 +69,7 @@ impl Assemblies {
     pub(crate) fn warning(&self, records: &[Record]) -> Option<String> {
         let first = self.list.first()?;
         let in_file = polymers(records);
-        let mut operators: HashMap<&str, Vec<&Operator>> = HashMap::new();
+        let mut operators: HashMap<&str, Vec<&Motion>> = HashMap::new();
         for part in &first.parts {
             let chains = part.chains.iter().map(String::as_str);
             for chain in chains.filter(|chain| in_file.contains(chain)) {
@@ -118,7 +80,7 @@ impl Assemblies {
         let mut all = operators.values().flatten();
         let is_as_in_file = copies == in_file.len()
             && operators.len() == copies
-            && all.all(|one| **one == Operator::IDENTITY);
+            && all.all(|one| **one == Motion::IDENTITY);
         (copies > 0 && !is_as_in_file).then(|| {
             let id = &first.id;
             let has = count(in_file.len(), "chain");
@@ -130,7 +92,6 @@ impl Assemblies {
     }
 }
 
-/// The assemblies cannot be understood.
 fn broken(line: Option<usize>, what: &str) -> Error {
     Error::input(format!("the biological assemblies cannot be built: {what}"))
         .on_line(line.map(|line| line as u64))
@@ -139,10 +100,7 @@ fn broken(line: Option<usize>, what: &str) -> Error {
 
 /// The name by which assemblies know the chain of an atom.
 fn part_name(record: &Record) -> &str {
-    record
-        .archive_chain
-        .as_deref()
-        .unwrap_or(&record.atom.chain)
+    record.archive_chain.as_ref().unwrap_or(&record.atom.chain)
 }
 
 /// Chains, by the names that assemblies know, that are protein or nucleic acid.
@@ -154,16 +112,15 @@ fn polymers(records: &[Record]) -> HashSet<&str> {
     records.iter().filter(is_polymer).map(part_name).collect()
 }
 
-/// Protein and nucleic acid chains, by the author's names.
 fn distinct_chains(records: &[Record]) -> usize {
     let polymers = polymers(records);
     let of_polymers = records
         .iter()
         .filter(|record| polymers.contains(part_name(record)));
-    let names: HashSet<&str> = of_polymers
+    of_polymers
         .map(|record| record.atom.chain.as_str())
-        .collect();
-    names.len()
+        .collect::<HashSet<_>>()
+        .len()
 }
 
 /// Builds the assembly of this name. If the file describes no assembly, its atoms stay as they are.
@@ -193,18 +150,14 @@ pub(crate) fn build(
     let mut on_axes = 0;
     for part in &assembly.parts {
         // Each record once, in file order.
-        let chains = part
-            .chains
-            .iter()
-            .filter_map(|name| of_chain.get(name.as_str()));
-        let mut members: Vec<usize> = chains.flatten().copied().collect();
+        let chains = part.chains.iter().map(String::as_str);
+        let members = chains.filter_map(|name| of_chain.get(name)).flatten();
+        let mut members: Vec<usize> = members.copied().collect();
         members.sort_unstable();
         members.dedup();
         if built.len() + members.len().saturating_mul(part.operators.len()) > MAX_ATOMS {
-            return Err(broken(
-                None,
-                &format!("assembly {id} has more than {MAX_ATOMS} atoms"),
-            ));
+            let what = format!("assembly {id} has more than {MAX_ATOMS} atoms");
+            return Err(broken(None, &what));
         }
         for operator in &part.operators {
             for name in &part.chains {
@@ -212,7 +165,7 @@ pub(crate) fn build(
             }
             for &index in &members {
                 let (record, images) = (&records[index], &mut images[index]);
-                let position = operator.moved(record.atom.position);
+                let position = operator.apply(record.atom.position);
                 if !is_place(position) {
                     let what =
                         format!("an operator of assembly {id} takes an atom out of all bounds");
@@ -272,7 +225,7 @@ pub(crate) fn assemblies(generators: &[Row<'_>], operators: &[Row<'_>]) -> Assem
     let operators = operators
         .iter()
         .filter_map(|row| Some((text(row, "id")?, operator(row)?)));
-    let operators: HashMap<&str, Operator> = operators.collect();
+    let operators: HashMap<&str, Motion> = operators.collect();
     let mut places: HashMap<&str, usize> = HashMap::new();
     for row in generators {
         match part(row, &operators) {
@@ -300,13 +253,13 @@ fn text<'a>(row: &Row<'a>, item: &str) -> Option<&'a str> {
     row.get(item)?.kind.value()
 }
 
-fn operator(row: &Row<'_>) -> Option<Operator> {
+fn operator(row: &Row<'_>) -> Option<Motion> {
     let read = |item: String| number(text(row, &item)?);
-    let mut operator = Operator::IDENTITY;
+    let mut operator = Motion::IDENTITY;
     for (i, shift) in operator.shift.iter_mut().enumerate() {
         *shift = read(format!("vector[{}]", i + 1))?;
     }
-    for (i, numbers) in operator.rotation.iter_mut().enumerate() {
+    for (i, numbers) in operator.rows.iter_mut().enumerate() {
         for (j, entry) in numbers.iter_mut().enumerate() {
             *entry = read(format!("matrix[{}][{}]", i + 1, j + 1))?;
         }
@@ -315,7 +268,7 @@ fn operator(row: &Row<'_>) -> Option<Operator> {
 }
 
 /// The assembly that a row belongs to, and its part of it.
-fn part<'a>(row: &Row<'a>, operators: &HashMap<&str, Operator>) -> Result<(&'a str, Part), String> {
+fn part<'a>(row: &Row<'a>, operators: &HashMap<&str, Motion>) -> Result<(&'a str, Part), String> {
     let value =
         |item: &str| text(row, item).ok_or_else(|| format!("a row of {GENERATORS} has no {item}"));
     let part = Part {
@@ -325,7 +278,6 @@ fn part<'a>(row: &Row<'a>, operators: &HashMap<&str, Operator>) -> Result<(&'a s
     Ok((value("assembly_id")?, part))
 }
 
-/// Names with commas between them.
 fn items(text: &str) -> impl Iterator<Item = &str> {
     text.split(',')
         .map(str::trim)
@@ -334,8 +286,8 @@ fn items(text: &str) -> impl Iterator<Item = &str> {
 
 /// Operators of an expression such as `1`, `1,3`, `(1-60)`, `(X0)(1-5,9)`: of groups in brackets every combination, the
 /// last group first.
-fn expression(text: &str, operators: &HashMap<&str, Operator>) -> Result<Vec<Operator>, String> {
-    let mut combined = vec![Operator::IDENTITY];
+fn expression(text: &str, operators: &HashMap<&str, Motion>) -> Result<Vec<Motion>, String> {
+    let mut combined = vec![Motion::IDENTITY];
     let groups = text.split(['(', ')']).map(str::trim);
     for group in groups.filter(|group| !group.is_empty()) {
         let members = group_members(group, operators)?;
@@ -344,19 +296,15 @@ fn expression(text: &str, operators: &HashMap<&str, Operator>) -> Result<Vec<Ope
                 "oper_expression `{text}` makes more than {MAX_COPIES} copies"
             ));
         }
-        let after = |before: &Operator| members.iter().map(|member| before.after(member)).collect();
-        combined = combined
+        let pairs = combined
             .iter()
-            .flat_map::<Vec<Operator>, _>(after)
-            .collect();
+            .flat_map(|outer| members.iter().map(move |inner| (outer, inner)));
+        combined = pairs.map(|(outer, inner)| outer.after(inner)).collect();
     }
     Ok(combined)
 }
 
-fn group_members(
-    group: &str,
-    operators: &HashMap<&str, Operator>,
-) -> Result<Vec<Operator>, String> {
+fn group_members(group: &str, operators: &HashMap<&str, Motion>) -> Result<Vec<Motion>, String> {
     let mut members = Vec::new();
     let mut add = |id: &str| match operators.get(id) {
         Some(_) if members.len() == MAX_COPIES => Err(format!(
@@ -393,7 +341,6 @@ pub(crate) struct Remark350 {
     current: usize,
     /// Rows of the operator in the making.
     rows: Vec<[f64; 4]>,
-    /// The last line on assemblies.
     line: usize,
 }
 
@@ -408,7 +355,6 @@ impl Remark350 {
         }
     }
 
-    /// Assemblies that all lines describe.
     pub(crate) fn assemblies(mut self) -> Assemblies {
         if !self.rows.is_empty() {
             let what = "the last BIOMT operator lacks rows".to_owned();
@@ -459,8 +405,8 @@ impl Remark350 {
         self.rows.push(row);
         if let [a, b, c] = *self.rows.as_slice() {
             self.rows.clear();
-            let operator = Operator {
-                rotation: [a, b, c].map(|row| [row[0], row[1], row[2]]),
+            let operator = Motion {
+                rows: [a, b, c].map(|row| [row[0], row[1], row[2]]),
                 shift: [a[3], b[3], c[3]],
             };
             let placed = self

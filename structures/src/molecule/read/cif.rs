@@ -2,15 +2,12 @@
 
 use crate::molecule::read::source::lines;
 
-/// One token of a CIF text.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Token<'a> {
-    /// 1-based line where it starts.
     pub(crate) line: usize,
     pub(crate) kind: Kind<'a>,
 }
 
-/// Kind of a token.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Kind<'a> {
     /// `data_NAME`, with the name.
@@ -28,7 +25,7 @@ pub(crate) enum Kind<'a> {
 }
 
 impl<'a> Kind<'a> {
-    /// The text of a value; nothing for `.` and `?` and for what is no value.
+    /// The text of a value; `None` for `.`, `?` and other tokens.
     pub(crate) fn value(self) -> Option<&'a str> {
         match self {
             Self::Bare("." | "?") => None,

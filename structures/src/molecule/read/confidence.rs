@@ -1,4 +1,4 @@
-//! Predicted models: the confidence (pLDDT) that their B column carries, and residues of which it knows no place.
+//! Predicted models: the confidence (pLDDT) in their B column, and residues without a known place.
 //!
 //! AlphaFold, ColabFold, ESMFold, Boltz and their like write in the place of temperature factors how sure they are of
 //! each residue's surroundings. This is pLDDT, a predicted lDDT-Cα, from 0 to 100 (Jumper et al., Nature 596, 583-589,
@@ -7,7 +7,7 @@
 //! Below [`LOW`] a residue is likely disordered (Tunyasuvunakool et al., Nature 596, 590-596, 2021): its place is no
 //! fact, and as a solid it blocks what it may not touch.
 //!
-//! What the column holds is detected from what the file says of itself ([`Provenance`]). If it says nothing, the values
+//! The meaning of the column is detected from the file's statements ([`Provenance`]). If there are none, the values
 //! decide, or the user does by giving a least pLDDT. One value per residue is hardly ever a refined structure's. If
 //! values differ from atom to atom (AlphaFold 3, Chai-1), four things part pLDDT from temperature factors:
 //!
@@ -19,10 +19,11 @@
 //! | atoms with many others about them | higher | lower |
 
 use crate::molecule::model::{
-    Atom, Confidence, ConfidenceSource, DropKind, Residue, residues, show_chain, squared_distance,
+    Atom, Confidence, ConfidenceSource, DropKind, Residue, residues, show_chain,
 };
 use crate::molecule::read::{Drops, ReadOptions};
 use crate::neighbours::SpatialHash;
+use crate::vector::{bounds, squared_distance};
 use std::collections::HashSet;
 
 /// Provenance of the coordinates, as the file states it.
@@ -50,15 +51,6 @@ pub const LOW: f64 = 50.0;
 /// Least share of the residues that must reach the least pLDDT for the user's word to be taken.
 const MIN_REACHING: f64 = 0.25;
 
-/// Lowest and highest B value.
-fn bounds(atoms: &[Atom]) -> [f64; 2] {
-    let start = [f64::INFINITY, f64::NEG_INFINITY];
-    let column = atoms.iter().map(|atom| atom.b_factor);
-    column.fold(start, |[low, high], value| {
-        [low.min(value), high.max(value)]
-    })
-}
-
 /// pLDDT, 0 to 100, of each of the residues, and how it was detected.
 ///
 /// # Errors
@@ -69,7 +61,7 @@ fn values(
     provenance: Provenance,
     options: &ReadOptions,
 ) -> Result<(ConfidenceSource, Vec<f64>), String> {
-    let [lowest, highest] = bounds(atoms);
+    let ([lowest], [highest]) = bounds(atoms.iter().map(|atom| [atom.b_factor]));
     let scale = if highest <= 1.0 { 100.0 } else { 1.0 };
     let of_residue = |residue: &Residue<'_>| {
         let sum: f64 = residue.members(atoms).map(|atom| atom.b_factor).sum();
@@ -171,7 +163,7 @@ pub(crate) fn weigh(
 /// Fewest residues of several atoms for values alone to show a prediction.
 const ENOUGH_RESIDUES: usize = 5;
 
-/// Mean pLDDT above which one value a residue shows a prediction: models that anyone docks are above it, most refined B
+/// Mean pLDDT above which one value per residue shows a prediction: models that anyone docks are above it, most refined B
 /// values below.
 const TELLING_MEAN: f64 = 60.0;
 
@@ -179,20 +171,18 @@ const TELLING_MEAN: f64 = 60.0;
 /// tail of low values, and that one's side chains are far above its backbone.
 const TELLING_MEAN_BY_ATOM: f64 = 70.0;
 
-/// By how many standard deviations the median lies at least above the mean.
+/// Least distance of the median above the mean, in standard deviations.
 const LOW_TAIL: f64 = 0.1;
 
-/// By how many standard deviations side chains lie at most above their backbones; of refined structures mostly 0.1 to
+/// Largest distance of side chains above their backbones, in standard deviations; of refined structures mostly 0.1 to
 /// 0.5.
 const MAX_TIPS: f64 = 0.1;
 
 /// Least correlation of the value with the number of atoms about; of refined structures mostly -0.35 to -0.7.
 const MIN_PACKING: f64 = -0.3;
 
-/// Distance in Å within which atoms are about one.
 const ABOUT: f64 = 6.0;
 
-/// Most atoms that the correlation is taken over.
 const MAX_SAMPLE: usize = 2000;
 
 /// Whether values alone show a prediction of this mean. Values are times `scale` on the scale of 0 to 100.

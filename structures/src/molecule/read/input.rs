@@ -63,12 +63,10 @@ pub(crate) fn bad_selection(text: &str) -> Error {
     .help(REMEDY)
 }
 
-/// Whether a text names chains or residues.
 fn is_selection(text: &str) -> bool {
     text.parse::<ResidueSelection>().is_ok()
 }
 
-/// Splits at the colon before the chains, if there is one.
 fn cut(text: &str) -> Option<(&str, &str)> {
     if Path::new(text).exists() {
         return None;

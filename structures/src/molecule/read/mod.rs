@@ -9,7 +9,6 @@ mod mmcif;
 mod models;
 mod pdb;
 mod pdb_columns;
-mod pdbtbx;
 mod policy;
 mod pseudo_atoms;
 mod record;
@@ -41,7 +40,7 @@ pub struct AtomFate {
     pub dropped: Option<DropKind>,
 }
 
-/// Atoms that are dropped: counted in the report, and listed where their fates are requested.
+/// Atoms that are dropped: counted in the report, and collected if their fates are requested.
 #[derive(Debug, Default)]
 pub(crate) struct Drops {
     pub(crate) report: ReadReport,
@@ -49,12 +48,10 @@ pub(crate) struct Drops {
 }
 
 impl Drops {
-    /// Drops an atom.
     pub(crate) fn add(&mut self, atom: &Atom, kind: DropKind) {
         self.add_named(atom, kind, kind.counted_by(atom));
     }
 
-    /// Drops an atom that the report counts under a name.
     pub(crate) fn add_named(&mut self, atom: &Atom, kind: DropKind, name: &str) {
         self.report.drop_atoms(kind, name, 1);
         if let Some(fates) = &mut self.fates {
@@ -73,7 +70,7 @@ impl Drops {
 /// Of alternate locations it keeps one per residue: that of the highest summed occupancy, and the alphabetically first
 /// of equals.
 ///
-/// The molecule's report says what was kept, dropped and altered.
+/// The molecule's report counts the atoms kept, dropped and altered.
 ///
 /// # Errors
 /// With the file, the line where there is one, and a remedy.
@@ -97,15 +94,7 @@ impl Molecule {
     /// # Errors
     /// As [`read`].
     pub fn read(file: &str) -> Result<Self, Error> {
-        Self::read_with(file, &ReadOptions::default())
-    }
-
-    /// As [`Self::read`], by other options.
-    ///
-    /// # Errors
-    /// As [`read`].
-    pub fn read_with(file: &str, options: &ReadOptions) -> Result<Self, Error> {
-        read(&InputSpec::parse(file)?, options)
+        read(&InputSpec::parse(file)?, &ReadOptions::default())
     }
 }
 
@@ -126,7 +115,7 @@ pub fn read_bytes(
 /// Number of models in a file's bytes, at least 1.
 ///
 /// # Errors
-/// The bytes are of no known format, or their records cannot be told apart.
+/// The bytes are of no known format, or their records cannot be read.
 pub fn model_count(file: &Path, bytes: Vec<u8>) -> Result<usize, Error> {
     let count = || {
         let source = source::unpack(file, bytes)?;
@@ -191,7 +180,7 @@ fn read_parts(
             false => source::not_a_structure(&spec.path),
         });
     }
-    let mut records = pdbtbx::records(format, &mut contents)?;
+    let mut records = std::mem::take(&mut contents.records);
     let mut drops = Drops {
         report: std::mem::take(&mut contents.report),
         fates,
@@ -233,7 +222,7 @@ fn unknown_model(model: usize, models: usize) -> Error {
     )
 }
 
-/// Reads the models that are wanted; the only one of a file whatever number was requested.
+/// Reads the requested models; a file's only model whatever number was requested.
 fn read_text(format: Format, text: &str, model: ModelChoice) -> Result<FileContents, Error> {
     let read = |model| match format {
         Format::Pdb => pdb::read(text, model),

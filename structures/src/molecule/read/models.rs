@@ -1,36 +1,34 @@
 //! Models of a file: parts of one molecule, or alternatives.
 //!
-//! The models of an NMR ensemble or of a trajectory lie on one another. Those of a biological assembly (`.pdb1`) or
-//! of a complex with a partner in each lie beside one another: two atoms that are not bonded keep a distance of some
-//! 3 Å. So the models of a file are parts where hardly any atom shares a cell of 2 Å with an atom of another model.
+//! The models of an NMR ensemble or of a trajectory overlap. Those of a biological assembly (`.pdb1`) or of a complex with
+//! a partner in each are side by side: two atoms that are not bonded keep a distance of some 3 Å. So the models of a file
+//! are parts if hardly any atom shares a cell of 2 Å with an atom of another model.
 
-use crate::molecule::model::{JoinedModels, count, residue_key, squared_distance};
+use crate::molecule::model::{JoinedModels, count, residue_key};
 use crate::molecule::read::Record;
 use crate::molecule::read::assembly::copy_name;
-use crate::neighbours::SpatialHash;
-use crate::neighbours::cell::{Cell, cell_of};
+use crate::neighbours::{Cell, SpatialHash, cell_of};
+use crate::vector::squared_distance;
 use std::collections::{BTreeMap, BTreeSet, HashMap, HashSet};
 
 /// Edge of the cells, in Å. Within a protein there is an atom for every 16 Å³, so that half of these cells of 8 Å³ hold
 /// one.
 const CELL: f64 = 2.0;
 
-/// Share of a model's atoms up to which it lies beside the others: some 40% do so of two models that lie on one
-/// another.
+/// Largest share of a part's atoms in cells of other models: of two models that overlap some 40% are.
 const MAX_SHARED: f64 = 0.05;
 
-/// Relation between the models of a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Relation {
     /// There is but one.
     Single,
-    /// They lie beside one another.
+    /// They are side by side.
     Parts,
-    /// Some lie on others.
+    /// Some overlap.
     Alternatives,
 }
 
-/// How the models lie, by the models and positions (Å) of their atoms.
+/// The relation of models, by the models and positions (Å) of their atoms.
 pub(crate) fn relation(atoms: impl Iterator<Item = (usize, [f64; 3])> + Clone) -> Relation {
     let cell = |position: [f64; 3]| cell_of(position, CELL);
     // The model of a cell's atoms; nothing where they are of several.
@@ -74,7 +72,7 @@ pub(crate) const ALTERNATIVES_JOINED: &str = "the models of this file lie on one
      molecule, in which they are counted one by one: --model 1 reads the first";
 
 /// Makes one molecule of several models. A chain whose name an earlier model has is renamed as copies in an assembly
-/// are: the second of chain A is `A-2`. Where the models are parts, an atom within 0.5 Å of the same atom of an earlier
+/// are: the second of chain A is `A-2`. If the models are parts, an atom within 0.5 Å of the same atom of an earlier
 /// model is left out.
 pub(crate) fn join(records: Vec<Record>, relation: Relation) -> (Vec<Record>, JoinedModels) {
     let mut of_chain: HashMap<&str, BTreeSet<usize>> = HashMap::new();
@@ -121,36 +119,26 @@ pub(crate) fn join(records: Vec<Record>, relation: Relation) -> (Vec<Record>, Jo
     (joined, report)
 }
 
-/// Copies nearer than this, in Å, are one: it lies on an axis of symmetry.
+/// Copies nearer than this, in Å, are one, on an axis of symmetry.
 const ON_AXIS: f64 = 0.5;
 
 /// Copies up to which a new one is compared with each; more are looked up by their place.
 const FEW: usize = 64;
 
-/// Where the copies of one atom lie (Å), and what each belongs to.
-#[derive(Clone)]
+/// Positions of the copies of one atom (Å), and the owner of each.
+#[derive(Clone, Default)]
 pub(crate) struct Images<T> {
     first: Vec<(T, [f64; 3])>,
     /// All of them, where they are many.
     cells: Option<SpatialHash<(T, [f64; 3])>>,
 }
 
-impl<T> Default for Images<T> {
-    fn default() -> Self {
-        Self {
-            first: Vec::new(),
-            cells: None,
-        }
-    }
-}
-
 impl<T: Copy> Images<T> {
-    /// Whether there is no copy.
     pub(crate) fn is_empty(&self) -> bool {
         self.first.is_empty()
     }
 
-    /// Whether a position lies on a copy, of those that count.
+    /// Whether a position is on a copy, of those that count.
     pub(crate) fn has(&self, position: [f64; 3], counts: impl Fn(T) -> bool) -> bool {
         let lies_on = |(owner, place): &(T, [f64; 3])| {
             counts(*owner) && squared_distance(*place, position) < ON_AXIS * ON_AXIS
@@ -161,18 +149,18 @@ impl<T: Copy> Images<T> {
         }
     }
 
-    /// Adds a copy.
     pub(crate) fn push(&mut self, owner: T, position: [f64; 3]) {
         match &mut self.cells {
             Some(cells) => cells.push(position, (owner, position)),
-            None => self.first.push((owner, position)),
-        }
-        if self.cells.is_none() && self.first.len() == FEW {
-            let mut cells = SpatialHash::new(ON_AXIS);
-            for &(owner, place) in &self.first {
-                cells.push(place, (owner, place));
+            None => {
+                self.first.push((owner, position));
+                if self.first.len() == FEW {
+                    let cells = self.cells.insert(SpatialHash::new(ON_AXIS));
+                    for &(owner, place) in &self.first {
+                        cells.push(place, (owner, place));
+                    }
+                }
             }
-            self.cells = Some(cells);
         }
     }
 }

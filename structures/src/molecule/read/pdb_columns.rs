@@ -14,7 +14,6 @@ pub(crate) fn columns(record: &str, start: usize, end: usize) -> &str {
     record.get(start..end.min(record.len())).unwrap_or("")
 }
 
-/// An atom record of a line.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(crate) enum AtomLine<'a> {
     /// In its columns, as far as can be seen.
@@ -26,7 +25,6 @@ pub(crate) enum AtomLine<'a> {
 }
 
 impl AtomLine<'_> {
-    /// The record in its columns, if these were found.
     pub(crate) fn text(&self) -> Option<&str> {
         match self {
             Self::InPlace(text) => Some(text),
@@ -40,7 +38,6 @@ impl AtomLine<'_> {
 /// shifted by blanks or tabs is moved so that its points are here.
 const POINTS: [usize; 3] = [34, 42, 50];
 
-/// Where the coordinates end.
 const END: usize = 54;
 
 /// Columns between the stops of a tab.
@@ -79,7 +76,6 @@ pub(crate) fn atom_line(line: &str) -> Option<AtomLine<'_>> {
     (decimals >= 3).then_some(AtomLine::Lost)
 }
 
-/// Whether a record begins as an atom's.
 fn is_atom(record: &str) -> bool {
     // Serial numbers beyond 99,999 grow to the left, into columns 6 and 5, as some programs write them.
     let has_wide_serial = |rest: &str| {
@@ -212,8 +208,7 @@ pub(crate) fn has_wide_chains(text: &str) -> bool {
     })
 }
 
-/// Kinds of residues that show a file's chains to have two letters: a force field may have a name of its own for one or
-/// two.
+/// Kinds of residues that show a file's chains to have two letters: a force field may have other names for one or two.
 const WITNESSES: usize = 4;
 
 /// Four-letter names of amino acids in the GROMOS force fields, which begin with those of three.
@@ -222,7 +217,7 @@ const GROMOS_VARIANTS: [&str; 14] = [
     "HISH", "LYSH",
 ];
 
-/// Whether columns 18-20 spell a residue that a letter more would not.
+/// Whether columns 18-20 spell a residue, and with the next letter they do not.
 fn is_known_with_three(three: &str, four: &str) -> bool {
     is_known(three) && !is_known(four) && !GROMOS_VARIANTS.contains(&four)
 }
@@ -296,7 +291,6 @@ pub(crate) fn element(record: &str) -> &str {
     other.map_or(kind, |(_, element)| element)
 }
 
-/// Whether a record has PDBQT's partial charge.
 fn has_partial_charge(record: &str) -> bool {
     let charge = columns(record, 70, 76).trim();
     charge.contains('.') && columns(record, 76, 77) == " " && number(charge).is_some()

@@ -66,7 +66,6 @@ impl Default for ModelChoice {
 }
 
 impl ModelChoice {
-    /// Whether a model is read, by its number.
     pub(crate) fn takes(self, number: usize) -> bool {
         match self {
             Self::Number(wanted) => number == wanted,
@@ -163,7 +162,6 @@ pub enum AlternateLocation {
     Named(char),
 }
 
-/// The error of a text that is none of the choices.
 fn none_of(choices: &str, text: &str) -> Error {
     Error::input(format!("'{text}' is none of {choices}")).help(format!("give one of {choices}"))
 }

@@ -1,9 +1,9 @@
 //! Pseudo-atoms: records that mark places and are no atoms. They are dropped, and reported.
 //!
-//! - **Markers** are residues of their own: membrane planes, pockets, shapes, frames. Their names are those of real
+//! - **Markers** are whole residues: membrane planes, pockets, shapes, frames. Their names are those of real
 //!   ligands, too (MEM is meropenem, SHA salicylhydroxamic acid), so that a residue is a marker only if all its atoms
 //!   have the names that the program gives them.
-//! - **Sites without mass** stand in molecules: lone pairs, mass centres, Drude particles, the fourth site of a water,
+//! - **Sites without mass** are in molecules: lone pairs, mass centres, Drude particles, the fourth site of a water,
 //!   virtual and centroid atoms. What has an element in its column is an atom, but for the names of a standard
 //!   residue's own virtual atoms.
 
@@ -13,8 +13,9 @@ use crate::molecule::chemistry::{
     NameColumn, amino_acid_type, column_symbol, is_amino_acid, is_site_name, is_water, mass_center,
     resolve,
 };
-use crate::molecule::model::{Atom, ResidueKey, residue_key, squared_distance};
+use crate::molecule::model::{Atom, ResidueKey, residue_key};
 use crate::molecule::read::Record;
+use crate::vector::squared_distance;
 
 /// Markers: residue name and the names of its atoms, digits behind them aside.
 const MARKERS: [(&str, &[&str]); 12] = [
@@ -82,7 +83,7 @@ fn markers(records: &[Record]) -> Vec<bool> {
     atoms().map(is_marker).collect()
 }
 
-/// The atoms of a record's residue that stand before and after it without another residue between.
+/// The atoms of a record's residue before and after it, without another residue between.
 fn beside(records: &[Record], index: usize) -> impl Iterator<Item = &Atom> {
     let own = residue_key(&records[index].atom);
     let is_same = move |atom: &&Atom| residue_key(atom) == own;

@@ -1,4 +1,4 @@
-//! Atoms as a file has them, and what the file says beside them.
+//! Atoms as a file has them, and its other statements about them.
 
 use crate::Error;
 use crate::molecule::chemistry::NameColumn;
@@ -6,26 +6,21 @@ use crate::molecule::model::{Atom, DropKind, ReadReport};
 use crate::molecule::read::assembly::Assemblies;
 use crate::molecule::read::confidence::Provenance;
 
-/// An atom as the file has it.
 #[derive(Clone, Debug)]
 pub(crate) struct Record {
     /// The atom. Its element is the text of the element column, which may be empty or nonsense; its radius is 0.
     pub(crate) atom: Atom,
     /// Its model, counted from 1 in the order of the file.
     pub(crate) model: usize,
-    /// What the archive calls the chain (`label_asym_id`), if that is another name.
+    /// The archive's name of the chain (`label_asym_id`), if it is another.
     pub(crate) archive_chain: Option<String>,
     pub(crate) name_column: NameColumn,
 }
 
-/// The atoms of the models that are read, and what the file says beside them.
+/// The atoms of the models that are read, and the file's other statements.
 #[derive(Debug, Default)]
 pub(crate) struct FileContents {
-    /// Text that pdbtbx reads in the file's own format; atom i has the serial number i.
-    pub(crate) text: String,
-    /// The atoms by their serial number. pdbtbx adds what it reads.
     pub(crate) records: Vec<Record>,
-    /// Models in the file.
     pub(crate) models: usize,
     /// Model and position (Å) of the atoms of other models whose coordinates can be read.
     pub(crate) ignored: Vec<(usize, [f64; 3])>,
@@ -36,12 +31,10 @@ pub(crate) struct FileContents {
     pub(crate) recognised: bool,
     pub(crate) provenance: Provenance,
     pub(crate) assemblies: Assemblies,
-    /// The report so far.
     pub(crate) report: ReadReport,
 }
 
 impl FileContents {
-    /// Counts an atom of a model that is not read.
     pub(crate) fn ignore(&mut self, model: usize, position: Option<[f64; 3]>) {
         self.report.drop_atoms(DropKind::Model, "", 1);
         let position = position.map(|position| (model, position));
@@ -55,7 +48,6 @@ impl FileContents {
     }
 }
 
-/// The fault of one field of one line.
 pub(crate) fn field_error(line: usize, field: &str, text: &str, expected: &str) -> Error {
     let text = text.trim();
     Error::input(format!("{field} is '{text}' where {expected} is needed"))
@@ -67,7 +59,6 @@ pub(crate) fn field_error(line: usize, field: &str, text: &str, expected: &str) 
 /// molecule is that large or that far off.
 const LARGEST_COORDINATE: f64 = 1e10;
 
-/// The rule for a coordinate, in words.
 pub(crate) const COORDINATE: &str = "a finite number of at most 1e10 in magnitude (Å)";
 
 /// A coordinate of an atom, in Å; nothing where no molecule can be.

@@ -1,5 +1,5 @@
-//! From the records of a file to the atoms that are docked: chains requested, by default no hydrogens, no waters, no
-//! additives, one alternate location per residue, and of predictions the residues that they are sure enough of.
+//! From the records of a file to the atoms that are docked: the requested chains with one alternate location per residue.
+//! Hydrogens, waters, additives and residues of low confidence are left out by default or on request.
 
 use std::collections::{BTreeSet, HashMap, HashSet};
 
@@ -158,7 +158,6 @@ impl RequestedChains {
         Ok(Self(requested))
     }
 
-    /// Why an atom is left out, if it was not requested.
     fn leaves_out(&self, atom: &Atom) -> Option<DropKind> {
         let Some(parts) = self.0.get(&atom.chain) else {
             return Some(DropKind::Chain);

@@ -22,11 +22,9 @@ const LIMIT: u64 = 4 << 30;
 /// Bytes that show what is packed in a gzip stream: a block of a tar.
 const BLOCK: u64 = 512;
 
-/// A file as unpacked text.
 pub(crate) struct Source {
     /// The text; bytes that are not UTF-8 (Latin-1 in old remarks) are replaced.
     pub(crate) text: String,
-    /// Whether the file was gzip-compressed.
     pub(crate) compressed: bool,
     pub(crate) format: Format,
 }
@@ -75,7 +73,6 @@ pub fn file_bytes(path: &Path) -> Result<Vec<u8>, Error> {
     read().map_err(|error| error.at(path))
 }
 
-/// Refuses what is too large.
 fn within_limit(bytes: Vec<u8>) -> Result<Vec<u8>, Error> {
     if bytes.len() as u64 > LIMIT {
         let message = format!("the file is larger than {LIMIT} bytes once unpacked");
@@ -165,7 +162,6 @@ fn ending(path: &Path) -> Option<String> {
     Some(name.rsplit_once('.')?.1.to_owned())
 }
 
-/// The error of a file of another kind.
 fn foreign(what: &str, remedy: &str) -> Error {
     Error::input(format!("this is {what}, not a PDB or mmCIF file")).help(remedy)
 }
@@ -190,7 +186,7 @@ fn refuse_archive(bytes: &[u8]) -> Result<(), Error> {
     found.map_or(Ok(()), |(_, what, remedy)| Err(foreign(what, remedy)))
 }
 
-/// Where a tar has its magic bytes (POSIX.1-1988, ustar).
+/// Offset of a tar's magic bytes (POSIX.1-1988, ustar).
 const USTAR: usize = 257;
 
 const UNPACK: &str =
@@ -202,7 +198,6 @@ const TOPOLOGY: &str = "give a PDB or mmCIF file: GROMACS writes one by `gmx edi
 const TABLE: &str =
     "give a PDB or mmCIF file: the archive has every entry in mmCIF, and gemmi and PyMOL convert";
 
-/// First bytes of archives and compressions.
 const MAGIC: [(&[u8], &str, &str); 7] = [
     (b"PK\x03\x04", "a zip archive", UNPACK),
     (b"7z\xbc\xaf\x27\x1c", "a 7z archive", UNPACK),
@@ -213,7 +208,6 @@ const MAGIC: [(&[u8], &str, &str); 7] = [
     (b"\x1f\x9d", "compressed by compress", GUNZIP),
 ];
 
-/// Names of other formats, by their endings.
 const ENDINGS: [(&str, &str, &str); 18] = [
     ("sdf", "an SDF file of small molecules", CONVERT),
     ("sd", "an SDF file of small molecules", CONVERT),

@@ -1,15 +1,15 @@
-//! Warnings about the atoms that are kept: what is missing and would make the shape a lie, what is there twice, and what
-//! is beyond the proteins, atom by atom, that the score was tuned on.
+//! Warnings about the atoms that are kept: parts that are missing or there twice, and molecules other than the all-atom
+//! proteins that the score was tuned on.
 
 use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 use crate::molecule::chemistry::{cofactor, is_water, side_chain};
 use crate::molecule::model::{
-    Atom, GroupKind, Residue, agreeing, count, examples, residue_key, show_chain, squared_distance,
+    Atom, GroupKind, Residue, agreeing, count, examples, residue_key, show_chain,
 };
 use crate::neighbours::SpatialHash;
+use crate::vector::squared_distance;
 
-/// All warnings.
 pub(crate) fn warnings(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> {
     let mut warnings = traces(atoms, residues);
     warnings.extend(missing_side_chains(atoms, residues));
@@ -22,7 +22,6 @@ pub(crate) fn warnings(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> 
     warnings
 }
 
-/// Names of a residue's atoms.
 fn names<'a>(atoms: &'a [Atom], residue: &Residue<'_>) -> BTreeSet<&'a str> {
     residue
         .members(atoms)
@@ -104,7 +103,7 @@ fn duplicates(atoms: &[Atom]) -> Option<String> {
     })
 }
 
-/// Atoms none of which has a place of its own, as in files that were written before there were coordinates.
+/// Atoms that are all in one place, as in files that were written before there were coordinates.
 fn in_one_place(atoms: &[Atom]) -> Option<String> {
     // Fewest atoms among which coincident positions are looked for.
     const PLACED: usize = 10;
@@ -181,7 +180,6 @@ fn coarse_grained(atoms: &[Atom], residues: &[Residue<'_>]) -> Option<String> {
     })
 }
 
-/// Molecules that are no proteins.
 fn without_protein(residues: &[Residue<'_>]) -> Option<String> {
     let protein = residues
         .iter()
@@ -220,7 +218,6 @@ const ONE_NUMBER: f64 = 1.2;
 /// Most atoms of a cell that are looked at: where there are more, they are counted as far as these show.
 const MAX_IN_CELL: usize = 64;
 
-/// Residues that are shown as examples.
 const SHOWN: usize = 3;
 
 /// Atoms of one chain that are on atoms of another, or of its other residues.
@@ -228,7 +225,6 @@ struct Overlap {
     atoms: usize,
     /// Their least distance, squared (Å²).
     least: f64,
-    /// Their residues.
     residues: BTreeSet<usize>,
 }
 
@@ -305,7 +301,6 @@ fn overlaps(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> {
     warnings
 }
 
-/// Whether two residues are alternatives of one number.
 fn is_one_number(a: &Residue<'_>, b: &Residue<'_>) -> bool {
     a.key.place() == b.key.place() && a.key.name != b.key.name
 }

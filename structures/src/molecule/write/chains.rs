@@ -133,7 +133,6 @@ impl ChainMap {
         Ok(Self { chains })
     }
 
-    /// The map as lines for people.
     pub(crate) fn remarks(&self) -> Vec<String> {
         self.chains
             .iter()

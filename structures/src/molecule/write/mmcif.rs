@@ -6,30 +6,10 @@ use std::io::{self, Write};
 use crate::Error;
 use crate::molecule::write::{Row, plain, rounded};
 
-const COLUMNS: [&str; 20] = [
-    "group_PDB",
-    "id",
-    "type_symbol",
-    "label_atom_id",
-    "label_alt_id",
-    "label_comp_id",
-    "label_asym_id",
-    "label_entity_id",
-    "label_seq_id",
-    "pdbx_PDB_ins_code",
-    "Cartn_x",
-    "Cartn_y",
-    "Cartn_z",
-    "occupancy",
-    "B_iso_or_equiv",
-    "auth_seq_id",
-    "auth_comp_id",
-    "auth_asym_id",
-    "auth_atom_id",
-    "pdbx_PDB_model_num",
-];
+const COLUMNS: &str = "group_PDB id type_symbol label_atom_id label_alt_id label_comp_id label_asym_id label_entity_id \
+    label_seq_id pdbx_PDB_ins_code Cartn_x Cartn_y Cartn_z occupancy B_iso_or_equiv auth_seq_id auth_comp_id auth_asym_id \
+    auth_atom_id pdbx_PDB_model_num";
 
-/// Writes remarks and the names of the columns.
 pub(super) fn write_head<W: Write>(writer: &mut W, remarks: &[String]) -> io::Result<()> {
     writeln!(writer, "data_knotdock\n_entry.id knotdock")?;
     if !remarks.is_empty() {
@@ -45,13 +25,12 @@ pub(super) fn write_head<W: Write>(writer: &mut W, remarks: &[String]) -> io::Re
         writeln!(writer, ";")?;
     }
     writeln!(writer, "loop_")?;
-    for column in COLUMNS {
+    for column in COLUMNS.split(' ') {
         writeln!(writer, "_atom_site.{column}")?;
     }
     Ok(())
 }
 
-/// Writes the end of the table.
 pub(super) fn write_end<W: Write>(writer: &mut W) -> io::Result<()> {
     writeln!(writer, "#")
 }

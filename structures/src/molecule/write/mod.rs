@@ -41,7 +41,7 @@ impl Row<'_> {
     }
 }
 
-/// A number rounded to so many thousandths or hundredths, without the sign that a rounded-off zero would keep.
+/// A number rounded to a multiple of 1 / `per_unit`, without the sign that a rounded-off zero would keep.
 fn rounded(value: f64, per_unit: f64) -> f64 {
     let value = (value * per_unit).round() / per_unit;
     if value == 0.0 { 0.0 } else { value }
@@ -143,7 +143,7 @@ pub fn fits(format: Format, molecule: &Molecule) -> Result<(), Error> {
     }
 }
 
-/// The error of what the columns of PDB cannot hold; mmCIF can.
+/// The error of a value that the columns of PDB cannot hold; mmCIF can.
 fn does_not_fit(what: &str) -> Error {
     Error::input(format!(
         "this does not fit the PDB format: {what}; write mmCIF instead"
@@ -216,7 +216,6 @@ fn write_rows<W: Write>(
     }
 }
 
-/// Whether a format can hold rows.
 fn check(format: Format, rows: &[Row<'_>]) -> Result<(), Error> {
     for row in rows {
         let atom = row.atom;
@@ -256,7 +255,6 @@ impl<'a, W: Write> ModelWriter<'a, W> {
         }
     }
 
-    /// Writes the head, once.
     fn write_head(&mut self, chains: &[String]) -> io::Result<()> {
         let Some(remarks) = self.remarks.take() else {
             return Ok(());

@@ -49,7 +49,7 @@ pub(super) fn check(rows: &[Row<'_>]) -> Result<(), Error> {
     Ok(())
 }
 
-/// Whether a number, rounded, fits so many columns.
+/// Whether a number, rounded, fits `width` columns.
 fn fits(value: f64, width: i32, per_unit: f64) -> bool {
     let decimals = per_unit.log10().round() as i32;
     // The point takes a column, and so does a minus sign.
@@ -78,7 +78,6 @@ pub(super) fn write_model<W: Write>(
     writeln!(writer, "{:<80}", "ENDMDL")
 }
 
-/// Writes the last line.
 pub(super) fn write_end<W: Write>(writer: &mut W) -> io::Result<()> {
     writeln!(writer, "{:<80}", "END")
 }

@@ -1,11 +1,13 @@
-//! A rigid motion between the stored coordinates of two solids.
+//! Rigid motions.
 
-/// x -> rows x + shift, a proper rotation and a translation.
+use crate::vector::{add, dot};
+
+/// A rigid motion x -> rows x + shift.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Motion {
     /// Rows of the rotation matrix.
     pub rows: [[f64; 3]; 3],
-    /// Translation, in the solids' unit.
+    /// Translation, in the unit of the points.
     pub shift: [f64; 3],
 }
 
@@ -32,7 +34,17 @@ impl Motion {
     pub fn shifted(&self, by: [f64; 3]) -> Self {
         Self {
             rows: self.rows,
-            shift: [0, 1, 2].map(|axis| self.shift[axis] + by[axis]),
+            shift: add(self.shift, by),
+        }
+    }
+
+    /// `first`, then this motion.
+    #[cfg(feature = "molecule")]
+    pub(crate) fn after(&self, first: &Self) -> Self {
+        let [x, y, z] = [0, 1, 2].map(|axis| first.rows.map(|row| row[axis]));
+        Self {
+            rows: self.rows.map(|row| [dot(row, x), dot(row, y), dot(row, z)]),
+            shift: self.apply(first.shift),
         }
     }
 }
