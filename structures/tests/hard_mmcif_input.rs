@@ -33,7 +33,7 @@ fn chains(molecule: &Molecule) -> Vec<&str> {
 
 #[test]
 fn names_are_the_authors_and_survive_that_they_look_like_numbers() {
-    // Large ribosome files have chains named 01 and 1E5.
+    // pdbtbx reads 01 as 1 and 1E5 as 100000; both are chain names in large ribosome files.
     let file = format!(
         "{HEAD}ATOM 1 C CA . GLY A 1 ? 1 2 3 1 9 -7 01 1\nATOM 2 C CA . GLY B 2 B 1 2 3 1 9 7 1E5 1\n\
          ATOM 3 C CA . GLY C 3 ? 1 2 3 1 9 8 aA-2 1\nATOM 4 C CA . GLY D 4 ? 1 2 3 1 9 9 \"A'\" 1\n"
@@ -79,7 +79,8 @@ fn archive_names_stand_in_for_missing_author_names() {
 
 #[test]
 fn decimals_are_read_exactly() {
-    // The number in brackets is a standard uncertainty.
+    // pdbtbx sums decimals digit by digit, which is off by an ulp, and wraps integers above 2^32; the number in
+    // brackets is a standard uncertainty.
     let file =
         format!("{HEAD}ATOM 1 C CA . GLY A 1 ? 14.219 -5000000000.5 1.25e1(3) 0.37 37.59 1 A 1\n");
     let atom = &read_text(&file, "").unwrap().atoms[0];

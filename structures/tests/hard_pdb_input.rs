@@ -12,9 +12,9 @@ use knotdock_structures::molecule::{
 };
 
 #[test]
-fn odd_records_are_passed_over() {
+fn records_that_break_pdbtbx_are_filtered_out() {
     // Free-form REMARK, short header, old DBREF and SEQADV, the dummy CRYST1 of NMR and model files, ANISOU without its
-    // atom, a MASTER record that does not add up.
+    // atom, a MASTER record that does not add up. Each alone makes pdbtbx 0.12 refuse or panic.
     let mut file = String::from(
         "HEADER    SHORT\nREMARK free text, no number\nREMARK\nDBREF  1ABC A\nSEQADV\nDBREF2 X\nSSBOND\nMODRES\n\
          CRYST1    0.000    0.000    0.000  90.00  90.00  90.00\nANISOU\nSEQRES\nMASTER\nUSER  x\n",
@@ -45,7 +45,7 @@ fn odd_records_are_passed_over() {
 
 #[test]
 fn atoms_keep_file_order_and_true_lines() {
-    // Residue 1 of A comes in two parts with B between.
+    // pdbtbx regroups by chain and residue: here residue 1 of A comes in two parts with B between.
     let lines = [
         Line {
             name: " N  ",
@@ -176,7 +176,7 @@ fn residue_numbers_and_insertion_codes_are_the_files() {
             insertion: 'a',
             ..ATOM
         },
-        // Numbers that look as if they began again after 9,999.
+        // pdbtbx adds 10,000 to every residue after this pair, other chains included.
         Line {
             number: 9999,
             ..ATOM
@@ -368,7 +368,7 @@ fn serial_numbers_may_grow_into_the_columns_before_theirs() {
 
 #[test]
 fn more_atoms_than_serial_numbers() {
-    // Serial numbers have five columns.
+    // Serial numbers have five columns, and pdbtbx counts on by itself after 99,999.
     let lines: String = (0..100_003)
         .map(|index| {
             Line {

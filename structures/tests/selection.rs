@@ -35,7 +35,7 @@ fn alternate_locations_go_by_summed_occupancy_and_then_alphabet() {
         ("C", Some('A')),
     ];
     assert_eq!(kept, expected);
-    // An atom without a location is in all conformers, with its own occupancy.
+    // pdbtbx copies atoms without a location into each conformer, and divides their occupancy among the copies.
     assert_eq!(molecule.atoms[0].occupancy, 1.0);
     let choices = &molecule.report.altered.alternate_locations;
     assert_eq!(choices.len(), 2);

@@ -10,9 +10,10 @@
 //!
 //! # Modules
 //!
-//! - `read`: from a file to atoms. `source` opens, unpacks and detects the format; `pdb` and `mmcif` read the atoms of
-//!   the wanted models. `assembly` builds an assembly on request. `select` applies the `policy` on chains, waters,
-//!   additives, alternate locations and confidence. The result is a [`Molecule`] with its [`ReadReport`].
+//! - `read`: from a file to atoms. `source` opens, unpacks and detects the format; `pdb` and `mmcif` repair the atoms of
+//!   the wanted models and keep what `pdbtbx` would lose. `assembly` builds an assembly on request. `select` applies the
+//!   `policy` on chains, waters, additives, alternate locations and confidence. The result is a [`Molecule`] with its
+//!   [`ReadReport`].
 //! - `model`: molecules, and quantities that follow from the places of atoms: residues, chains, surface, unresolved
 //!   segments.
 //! - `chemistry`: tables of names, elements, radii, charges, contact types, chi angles and rotamers.

@@ -248,7 +248,7 @@ mod tests {
 
     #[test]
     fn alpha_carbon_is_not_calcium() {
-        // Blank column: some readers take CA for calcium. Column CA: some programs write it so.
+        // Blank column: pdbtbx and others read CA as calcium. Column CA: some programs write it so.
         assert_eq!(of("ALA", "CA", "", Blank), ("C", Origin::Derived));
         assert_eq!(of("ALA", "CA", "CA", Filled), ("C", Origin::Corrected));
         assert_eq!(of("CA", "CA", "", Filled), ("Ca", Origin::Derived));

@@ -11,6 +11,7 @@ use crate::molecule::model::{Atom, count};
 use crate::molecule::read::assembly::{GENERATORS, OPERATORS, assemblies};
 use crate::molecule::read::cif::{Kind, Token, tokens};
 use crate::molecule::read::confidence::{Provenance, is_measured};
+use crate::molecule::read::pdbtbx::{MMCIF_HEADER, NO_ALTERNATE, SHOWN_NUMBERS};
 use crate::molecule::read::{
     COORDINATE, FileContents, ModelChoice, Record, coordinate, field_error, number,
 };
@@ -251,6 +252,7 @@ impl Table<'_> {
         contents.recognised = true;
         let columns = self.columns()?;
         let width = self.items.len();
+        contents.text.push_str(MMCIF_HEADER);
         // Numbers of the models by order of appearance; rows of one model need not be together.
         let mut models: HashMap<Option<&str>, usize> = HashMap::new();
         for row in self.values.chunks(width) {
@@ -337,11 +339,7 @@ impl<'a> AtomRow<'_, 'a> {
         let chain = self.either(columns.chain).unwrap_or("");
         // Waters and ions have no label_seq_id; a file without author numbers leaves them unnumbered.
         let number = self.either(columns.number).unwrap_or("0");
-        let name = self.value(columns.name).unwrap_or("_");
-        let group = self.value(columns.group).unwrap_or("");
         let atom = Atom {
-            name: name.to_ascii_uppercase(),
-            hetero: group.eq_ignore_ascii_case("HETATM"),
             residue_name: self.value(columns.residue).unwrap_or("UNK").to_owned(),
             chain: chain.to_owned(),
             residue_number: number
@@ -356,7 +354,7 @@ impl<'a> AtomRow<'_, 'a> {
             line: self.line(),
             ..Atom::default()
         };
-        self.check_names(name, &atom)?;
+        self.write_shown(&atom, contents)?;
         let archive_chain = self.value(columns.chain[1]).filter(|name| *name != chain);
         let record = Record {
             atom,
@@ -373,23 +371,69 @@ impl<'a> AtomRow<'_, 'a> {
         Ok(())
     }
 
-    /// Refuses names that no mmCIF file can be written with.
-    fn check_names(&self, name: &str, atom: &Atom) -> Result<(), Error> {
+    /// Writes the row that pdbtbx reads: the atom's name and kind.
+    ///
+    /// For each atom it goes through all chains, all residues of one and all names of one, so it sees few.
+    fn write_shown(&self, atom: &Atom, contents: &mut FileContents) -> Result<(), Error> {
+        let name = self.value(self.columns.name).unwrap_or("");
+        let quote = self.quote("label_atom_id", name)?;
         let character = |character: Option<char>| character.map_or(String::new(), String::from);
-        for (item, value) in [
-            ("label_atom_id", name),
-            ("label_alt_id", &character(atom.alternate_location)),
-            ("label_comp_id", &atom.residue_name),
-            ("auth_asym_id", &atom.chain),
-            ("pdbx_PDB_ins_code", &character(atom.insertion_code)),
-        ] {
-            if value.contains('"') && value.contains('\'') {
-                return Err(self.error(item, value, "a value with one kind of quote"));
-            }
-            if !value.bytes().all(|byte| (32..127).contains(&byte)) {
-                return Err(self.error(item, value, "plain ASCII text"));
-            }
-        }
+        self.quote("label_alt_id", &character(atom.alternate_location))?;
+        self.quote("label_comp_id", &atom.residue_name)?;
+        self.quote("auth_asym_id", &atom.chain)?;
+        self.quote("pdbx_PDB_ins_code", &character(atom.insertion_code))?;
+        let is_hetero = |group: &str| group.eq_ignore_ascii_case("HETATM");
+        let is_hetero = self.value(self.columns.group).is_some_and(is_hetero);
+        let kind = if is_hetero { "HETATM" } else { "ATOM" };
+        let name = if name.is_empty() { "_" } else { name };
+        let serial = contents.records.len();
+        let residue = serial % SHOWN_NUMBERS;
+        contents.text.push_str(&format!(
+            "{kind} {serial} {quote}{name}{quote} \"{NO_ALTERNATE}\" \"UNK\" \"A\" {residue} ? \"C\" 0 0 0\n"
+        ));
         Ok(())
+    }
+
+    /// The quotes for a value that pdbtbx ends where they end: it stops at the first quote of the kind it started with.
+    fn quote(&self, item: &str, value: &str) -> Result<char, Error> {
+        let quote = match (value.contains('"'), value.contains('\'')) {
+            (false, _) => '"',
+            (true, false) => '\'',
+            (true, true) => return Err(self.error(item, value, "a value with one kind of quote")),
+        };
+        if !value.bytes().all(|byte| (32..127).contains(&byte)) {
+            return Err(self.error(item, value, "plain ASCII text"));
+        }
+        Ok(quote)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::collections::HashSet;
+
+    /// pdbtbx goes through all residues of a chain for each new one: 200,000 waters took 10.9 s. So it is shown few of
+    /// them, whatever their number, and the others' numbers pass it by.
+    #[test]
+    fn pdbtbx_is_shown_a_bounded_number_of_residues() {
+        let head = "data_x\nloop_\n_atom_site.id\n_atom_site.label_atom_id\n_atom_site.label_comp_id\n\
+                    _atom_site.auth_asym_id\n_atom_site.auth_seq_id\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n\
+                    _atom_site.Cartn_z\n";
+        let shown = |waters: usize| {
+            let rows = (1..=waters).map(|number| format!("{number} O HOH W {number} 1 2 3\n"));
+            let text = head.to_owned() + &rows.collect::<String>();
+            let model = ModelChoice::Number(1);
+            let contents = read(&text, model).unwrap();
+            assert_eq!(contents.records.len(), waters);
+            let numbers = contents
+                .text
+                .lines()
+                .filter(|line| line.starts_with("ATOM"));
+            let number = |line: &str| line.split_whitespace().nth(6).map(str::to_owned);
+            numbers.filter_map(number).collect::<HashSet<_>>().len()
+        };
+        assert_eq!(shown(900), 900);
+        assert_eq!(shown(3000), shown(9000));
     }
 }

@@ -9,6 +9,7 @@ mod mmcif;
 mod models;
 mod pdb;
 mod pdb_columns;
+mod pdbtbx;
 mod policy;
 mod pseudo_atoms;
 mod record;
@@ -180,7 +181,7 @@ fn read_parts(
             false => source::not_a_structure(&spec.path),
         });
     }
-    let mut records = std::mem::take(&mut contents.records);
+    let mut records = pdbtbx::records(format, &mut contents)?;
     let mut drops = Drops {
         report: std::mem::take(&mut contents.report),
         fates,

@@ -9,6 +9,7 @@ use crate::molecule::read::pdb_columns::{
     AtomLine, atom_line, columns, coordinates, element, has_wide_chains, residue_and_chain,
     residue_number, segid,
 };
+use crate::molecule::read::pdbtbx::{NO_ALTERNATE, SHOWN_NUMBERS};
 use crate::molecule::read::source::lines;
 use crate::molecule::read::{
     COORDINATE, FileContents, ModelChoice, Record, coordinate, field_error, number,
@@ -164,13 +165,10 @@ fn read_atom(
     model: usize,
     contents: &mut FileContents,
 ) -> Result<(), Error> {
-    let position = checked_position(line, record)?;
-    let [occupancy, b_factor] = [(54, 60, 1.0), (60, 66, 0.0)].map(|(start, end, default)| {
-        contents.or_default(number(columns(record, start, end)), default)
-    });
+    check_columns(line, record)?;
     let (residue_name, chain) = residue_and_chain(record, wide_chains);
-    let residue = [columns(record, 22, 26), columns(record, 26, 27)];
-    let (residue_number, code) = residue_number(residue[0], residue[1]).ok_or_else(|| {
+    let [number, code] = [columns(record, 22, 26), columns(record, 26, 27)];
+    let (residue_number, code) = residue_number(number, code).ok_or_else(|| {
         let found = columns(record, 22, 27);
         field_error(
             line,
@@ -181,11 +179,6 @@ fn read_atom(
     })?;
     let atom = Atom {
         line,
-        name: columns(record, 12, 16).trim().to_ascii_uppercase(),
-        hetero: record.starts_with("HETATM"),
-        position,
-        occupancy,
-        b_factor,
         chain: chain.to_owned(),
         residue_name: residue_name.to_owned(),
         residue_number,
@@ -194,6 +187,7 @@ fn read_atom(
         element: element(record).to_owned(),
         ..Atom::default()
     };
+    write_repaired(record, contents);
     contents.records.push(Record {
         atom,
         model,
@@ -206,9 +200,8 @@ fn read_atom(
     Ok(())
 }
 
-/// The coordinates of a record. It refuses one that is too short or not ASCII, and coordinates that are no numbers or run
-/// together.
-fn checked_position(line: usize, record: &str) -> Result<[f64; 3], Error> {
+/// Refuses a record that is too short or not ASCII, and coordinates that are no numbers or run together.
+fn check_columns(line: usize, record: &str) -> Result<(), Error> {
     if record.len() < 54 {
         let length = record.len();
         let message = format!(
@@ -225,22 +218,56 @@ fn checked_position(line: usize, record: &str) -> Result<[f64; 3], Error> {
         return Err(field_error(line, place, &text, "plain ASCII text"));
     }
     let coordinates = coordinates(record);
-    let axes = [
+    for (axis, text) in [
         "x (columns 31-38)",
         "y (columns 39-46)",
         "z (columns 47-54)",
-    ];
-    let mut position = [0.0; 3];
-    for (place, (axis, text)) in position.iter_mut().zip(axes.iter().zip(coordinates)) {
-        let fault = || field_error(line, &format!("coordinate {axis}"), text, COORDINATE);
-        *place = coordinate(text).ok_or_else(fault)?;
+    ]
+    .into_iter()
+    .zip(coordinates)
+    {
+        if coordinate(text).is_none() {
+            return Err(field_error(
+                line,
+                &format!("coordinate {axis}"),
+                text,
+                COORDINATE,
+            ));
+        }
     }
     if run_together(coordinates) {
         let expected = "three numbers in columns of eight (larger ones need mmCIF)";
         let place = "the coordinates (columns 31-54)";
         return Err(field_error(line, place, &coordinates.concat(), expected));
     }
-    Ok(position)
+    Ok(())
+}
+
+/// Writes the record that pdbtbx reads: the columns that it is sure to read, with what it needs not know left out.
+///
+/// For each atom it goes through all chains and residues that it has, so it sees few. Carbon is the element that it
+/// finds fastest.
+fn write_repaired(record: &str, contents: &mut FileContents) {
+    let [occupancy, b_factor] =
+        [(54, 60, "1.00"), (60, 66, "0.00")].map(|(start, end, default)| {
+            let text = columns(record, start, end).trim();
+            let is_number = number(text).is_some();
+            contents.report.altered.defaults_filled += usize::from(!is_number);
+            if is_number { text } else { default }
+        });
+    let kind = if record.starts_with("HETATM") {
+        "HETATM"
+    } else {
+        "ATOM"
+    };
+    // pdbtbx adds 100,000 each time that the serial number comes back to 0 after 99,999.
+    let serial = contents.records.len() % 100_000;
+    let residue = contents.records.len() % SHOWN_NUMBERS;
+    let (name, position) = (columns(record, 12, 16), columns(record, 30, 54));
+    contents.text.push_str(&format!(
+        "{kind:6}{serial:>5} {name}{NO_ALTERNATE}UNK A{residue:>4}    {position}{occupancy:>6}{b_factor:>6}{:10} C  \n",
+        ""
+    ));
 }
 
 /// Whether two coordinates run into one another, so that the columns no longer say where one ends.

@@ -1,4 +1,4 @@
-//! Atoms as a file has them, and its other statements about them.
+//! Atoms as a file has them, and the file's other statements.
 
 use crate::Error;
 use crate::molecule::chemistry::NameColumn;
@@ -12,7 +12,7 @@ pub(crate) struct Record {
     pub(crate) atom: Atom,
     /// Its model, counted from 1 in the order of the file.
     pub(crate) model: usize,
-    /// The archive's name of the chain (`label_asym_id`), if it is another.
+    /// What the archive calls the chain (`label_asym_id`), if that is another name.
     pub(crate) archive_chain: Option<String>,
     pub(crate) name_column: NameColumn,
 }
@@ -20,6 +20,9 @@ pub(crate) struct Record {
 /// The atoms of the models that are read, and the file's other statements.
 #[derive(Debug, Default)]
 pub(crate) struct FileContents {
+    /// Text that pdbtbx reads in the file's own format; atom i has the serial number i.
+    pub(crate) text: String,
+    /// The atoms by their serial number. pdbtbx adds what it reads.
     pub(crate) records: Vec<Record>,
     pub(crate) models: usize,
     /// Model and position (Å) of the atoms of other models whose coordinates can be read.
