@@ -119,7 +119,7 @@ impl<'a> Refining<'a> {
         for (row, name, chains) in written {
             all.table.push(row);
             all.names.push(name);
-            all.chains = Some(chains);
+            all.chains = chains;
         }
         Ok(all)
     }
@@ -130,7 +130,7 @@ impl<'a> Refining<'a> {
         &self,
         row: &PoseRow,
         list: &mut PairList,
-    ) -> Result<(RefinedRow, String, ChainMap), Error> {
+    ) -> Result<(RefinedRow, String, Option<ChainMap>), Error> {
         let refined = self.refiner.refine(&row.pose, list);
         let mut refined = refined?;
         let quality = self.known.map(|known| known.qualities(row, &refined));

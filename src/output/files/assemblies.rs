@@ -93,7 +93,7 @@ fn write_assembly(
     Ok(())
 }
 
-/// Writes a part behind `before` vertices, and returns how many there are then.
+/// Writes a part after `before` vertices; returns the new number of vertices.
 fn write_part(
     file: &mut dyn io::Write,
     name: &str,
