@@ -76,11 +76,11 @@ pub struct DockOptions {
     /// Threads and memory, which change no result and are recorded elsewhere.
     #[serde(skip)]
     pub machine: MachineOptions,
-    /// Where a run within a time stopped: no option, but a fact that a run which repeats it needs. `None`: nowhere.
+    /// Stop of a run within a time: no option, but needed to repeat the run. `None`: it did not stop early.
     pub stopped: Option<Stopped>,
 }
 
-/// Where a run within a time stopped.
+/// Stop of a run within a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stopped {
@@ -139,18 +139,15 @@ impl DockOptions {
     /// result.
     pub fn given(&self) -> impl Iterator<Item = &'static Definition> {
         let default = Self::default();
-        let all = definitions().iter();
-        let of_run = all.filter(|option| option.subject() != "machine");
+        let of_run = definitions()
+            .iter()
+            .filter(|option| option.subject() != "machine");
         of_run.filter(move |option| !option.is_same(self, &default))
     }
 
     /// The first option that differs from its default and has no effect on meshes, or on molecules.
     pub fn without_effect(&self, are_meshes: bool) -> Option<&'static Definition> {
-        let other = if are_meshes {
-            Scope::Molecules
-        } else {
-            Scope::Meshes
-        };
+        let other = [Scope::Meshes, Scope::Molecules][usize::from(are_meshes)];
         self.given().find(|option| option.scope() == other)
     }
 }

@@ -24,7 +24,7 @@ options! {
     }
 }
 
-/// What records hold of runs that are older than the option.
+/// Value of records that are older than the option.
 fn before_sharp_fits() -> SharpChoice {
     SharpChoice::Off
 }
@@ -33,11 +33,11 @@ fn before_sharp_fits() -> SharpChoice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SharpChoice {
-    /// They rank where one stands out.
+    /// They rank if one stands out.
     #[default]
     Auto,
     /// They always rank.
     On,
-    /// They are not looked for.
+    /// None are made.
     Off,
 }

@@ -49,11 +49,7 @@ impl Range {
     }
 
     fn contains(self, value: f64) -> bool {
-        let is_above = if self.is_open {
-            value > self.low
-        } else {
-            value >= self.low
-        };
+        let is_above = value > self.low || (!self.is_open && value == self.low);
         is_above && value <= self.high
     }
 }
@@ -115,9 +111,8 @@ impl<N: Number> Rule<N> for Range {
     fn read(&self, text: &str, _: &Path) -> Result<N, Error> {
         let value: Option<N> = text.parse().ok();
         let value = value.filter(|value| self.contains(value.float()));
-        value
-            .map(N::plain)
-            .ok_or_else(|| Error::input(format!("it must be {} {self}", N::KIND)))
+        let refused = || Error::input(format!("it must be {} {self}", N::KIND));
+        value.map(N::plain).ok_or_else(refused)
     }
 
     fn check(&self, value: &N) -> Result<(), Error> {
@@ -175,7 +170,7 @@ impl Rule<usize> for Rotations {
 /// The field's count of rotations at an angle of 15 degrees.
 const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
 
-/// The number of rotations that the field takes for an angle in degrees: N = round(3600 (15/D)^3). `None` unless the
+/// The number of rotations of the field for an angle in degrees: N = round(3600 (15/D)^3). `None` unless the
 /// angle is at least 0.1 (12 thousand million rotations) and at most 180.
 pub fn rotations_of_angle(angle: f64) -> Option<usize> {
     let rotations = (ROTATIONS_AT_15_DEGREES * (15.0 / angle).powi(3)).round();
@@ -234,10 +229,8 @@ pub fn all_or_at_least_one(text: &str) -> Result<AllOr, Error> {
     if text == "all" {
         return Ok(AllOr(None));
     }
-    let count = in_range(AT_LEAST_ONE)(text);
-    count
-        .map(|count| AllOr(Some(count)))
-        .map_err(|error| Error::input(format!("{error}, or `all`")))
+    let count = in_range(AT_LEAST_ONE)(text).map(|count| AllOr(Some(count)));
+    count.map_err(|error| Error::input(format!("{error}, or `all`")))
 }
 
 /// A number and the unit after it, which begins at the first character for which `is_unit` holds.

@@ -14,15 +14,16 @@ pub const MAX_ROWS: usize = 2000;
 
 /// The contacts of the first [`MAX_ROWS`] rows of a run of molecules.
 pub struct RunContacts<'a> {
-    finder: ContactFinder<'a>,
-    /// Of each row.
-    rows: Vec<Vec<Contact>>,
-    /// Rows that stand for the best clusters.
-    firsts: Vec<usize>,
+    /// Residues that contacts are of.
+    pub finder: ContactFinder<'a>,
+    /// The contacts of each row.
+    pub rows: Vec<Vec<Contact>>,
+    /// Rows that represent the best clusters, which the shares count.
+    pub firsts: Vec<usize>,
 }
 
 impl<'a> RunContacts<'a> {
-    /// Of molecules, in the poses of a table; charges are those at a pH.
+    /// The contacts of molecules in the poses of a table; charges are those at a pH.
     pub fn of(
         molecules: [&'a Molecule; 2],
         table: &PoseTable,
@@ -50,22 +51,7 @@ impl<'a> RunContacts<'a> {
         }
     }
 
-    /// The residues that contacts are of.
-    pub fn finder(&self) -> &ContactFinder<'a> {
-        &self.finder
-    }
-
-    /// The contacts of each row.
-    pub fn rows(&self) -> &[Vec<Contact>] {
-        &self.rows
-    }
-
-    /// Clusters that the shares count.
-    pub fn counted(&self) -> usize {
-        self.firsts.len()
-    }
-
-    /// How many of the best clusters touch each residue of either side.
+    /// The share of the best clusters that touches each residue of either side.
     pub fn shares(&self) -> [Vec<ResidueShare>; 2] {
         let clusters = self.firsts.iter().map(|&row| self.rows[row].as_slice());
         residue_shares(&self.finder, &clusters.collect::<Vec<_>>())

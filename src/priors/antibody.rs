@@ -79,12 +79,12 @@ pub struct Antibody {
     pub domains: Vec<VariableDomain>,
     /// For each atom of the molecule, whether it belongs to a CDR.
     pub determining: Vec<bool>,
-    /// For each atom, whether it belongs to a CDR or lies within [`PARATOPE_EDGE`] of an atom that does.
+    /// For each atom, whether it is within [`PARATOPE_EDGE`] of an atom of a CDR, or is one.
     pub paratope: Vec<bool>,
 }
 
 impl Antibody {
-    /// The variable domains of antibodies in a molecule; `None` where there is none.
+    /// The variable domains of antibodies in a molecule; `None` if there is none.
     pub fn of(molecule: &Molecule) -> Option<Self> {
         let mut domains = Vec::new();
         let mut determining = vec![false; molecule.atoms.len()];
@@ -106,7 +106,7 @@ impl Antibody {
     }
 
     /// The variable domains in words.
-    pub fn domains_in_words(&self) -> String {
+    fn domains_in_words(&self) -> String {
         let words = |domain: &VariableDomain| {
             let [first, last] = &domain.residues;
             format!("{} {}:{first}-{last}", domain.kind.name(), domain.chain)
@@ -115,7 +115,7 @@ impl Antibody {
         domains.collect::<Vec<_>>().join(", ")
     }
 
-    /// What it is and where it binds, in words.
+    /// Its domains and its site, in words.
     pub fn reason(&self) -> String {
         format!(
             "an antibody ({}), which binds by its CDRs and what lies within {PARATOPE_EDGE} Å of them",
@@ -127,7 +127,7 @@ impl Antibody {
 /// Antibodies bind by their CDRs and the atoms around them.
 pub struct AntibodyPrior;
 
-/// Score of a contact away from the paratope, in contacts: about what contacts earn.
+/// Score of a contact away from the paratope, in contacts: about that of a contact.
 const WEIGHT: f64 = 1.0;
 
 impl Prior for AntibodyPrior {
@@ -178,23 +178,19 @@ fn lines(antibody: &Antibody) -> Vec<String> {
 /// Whether each atom is one of the `chosen` or lies within `distance` (Å) of one.
 fn near(molecule: &Molecule, chosen: &[bool], distance: f64) -> Vec<bool> {
     let positions = || molecule.atoms.iter().map(|atom| atom.position);
-    let chosen: Vec<[f64; 3]> = positions()
-        .zip(chosen)
-        .filter_map(|(position, chosen)| chosen.then_some(position))
-        .collect();
+    let chosen = positions().zip(chosen).filter(|(_, chosen)| **chosen);
+    let chosen: Vec<[f64; 3]> = chosen.map(|(position, _)| position).collect();
     let cells = SpatialHash::of_points(chosen.iter().copied(), distance);
     let is_near = |position: [f64; 3]| {
         cells.around(position).any(|&other| {
-            let square: f64 = (0..3)
-                .map(|axis| (position[axis] - chosen[other][axis]).powi(2))
-                .sum();
-            square <= distance * distance
+            let along = |axis: usize| (position[axis] - chosen[other][axis]).powi(2);
+            (0..3).map(along).sum::<f64>() <= distance * distance
         })
     };
     positions().map(is_near).collect()
 }
 
-/// Both numberings: to make one takes longer than to number a chain that is no antibody's.
+/// Both numberings, made once: one takes longer than the numbering of a chain.
 static ANNOTATORS: LazyLock<Annotators> = LazyLock::new(Annotators::new);
 
 /// Numbering of any chain by both schemes.
@@ -205,8 +201,7 @@ struct Annotators {
 
 impl Annotators {
     fn new() -> Self {
-        // Both schemes number all chains of antibodies, and the default confidence is in range: these are all that can
-        // be refused.
+        // Errors are of chains that a scheme lacks and of confidences out of range.
         let of = |scheme| {
             Annotator::new(IG_CHAINS, scheme, None)
                 .unwrap_or_else(|error| unreachable!("numbering of antibodies: {error}"))
@@ -225,7 +220,7 @@ impl Annotators {
     ) -> Vec<(VariableDomain, Vec<Option<usize>>)> {
         let sequence = chain.sequence();
         let residues = &chain.residues;
-        // A chain too short, or longer than any antibody's, is an error of the search, as is one without a domain.
+        // A chain that is too short or too long for an antibody is an error, as is one without a domain.
         let numbered = |annotator: &Annotator| annotator.number_domains(&sequence).ok();
         let (Some(imgt), Some(kabat)) = (numbered(&self.imgt), numbered(&self.kabat)) else {
             return Vec::new();

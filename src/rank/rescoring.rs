@@ -4,7 +4,7 @@ use crate::options::DockOptions;
 use crate::priors::active_residues::ActiveResidues;
 use crate::priors::flexible_regions::FlexibleRegions;
 use crate::priors::restrained::Restrained;
-use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermInputs};
+use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermDefinition, TermInputs};
 use knotdock_structures::Knots;
 use serde::Serialize;
 
@@ -41,11 +41,8 @@ impl<'a> Rescoring<'a> {
                 fine_contact_potential: options.terms.fine_contact_potential.as_ref(),
                 atom_pair_potential: options.terms.atom_pair_potential.as_ref(),
                 active_residues: &active.sets,
-                unresolved: regions
-                    .unresolved
-                    .each_ref()
-                    .map(|side| side.segments.as_slice()),
-                termini: regions.termini.each_ref().map(|side| side.atoms.as_slice()),
+                unresolved: regions.unresolved.each_ref().map(|side| &side.segments[..]),
+                termini: regions.termini.each_ref().map(|side| &side.atoms[..]),
                 distance_restraints: &restrained.distances,
                 membrane: restrained.membrane.as_ref(),
                 predicted: restrained.predicted.each_ref().map(Vec::as_slice),
@@ -62,11 +59,15 @@ impl<'a> Rescoring<'a> {
         Rescorer::new(&self.inputs, &self.weights)
     }
 
-    /// The terms that act, in the order of the registry.
-    pub fn acting(&self) -> Vec<ActingTerm> {
+    /// The definitions of the terms that act, with their weights, in the order of the registry.
+    fn acting_definitions(&self) -> impl Iterator<Item = (&'static TermDefinition, f64)> {
         let terms = POSE_TERMS.iter().zip(self.weights);
-        let acting = terms.filter(|(term, weight)| term.acts(&self.inputs, *weight));
-        let acting = acting.map(|(term, weight)| ActingTerm {
+        terms.filter(|(term, weight)| term.acts(&self.inputs, *weight))
+    }
+
+    /// The terms that act.
+    pub fn acting(&self) -> Vec<ActingTerm> {
+        let acting = self.acting_definitions().map(|(term, weight)| ActingTerm {
             id: term.id,
             weight,
             unit: term.unit,
@@ -76,8 +77,7 @@ impl<'a> Rescoring<'a> {
 
     /// Time to rescore a pose, as a share of the time with every term; 0 if no term acts.
     pub fn time_share(&self) -> f64 {
-        let terms = POSE_TERMS.iter().zip(self.weights);
-        let acting = terms.filter(|(term, weight)| term.acts(&self.inputs, *weight));
-        acting.fold(0.0, |share, (term, _)| share.max(term.time_share))
+        let shares = self.acting_definitions().map(|(term, _)| term.time_share);
+        shares.fold(0.0, f64::max)
     }
 }

@@ -1,7 +1,7 @@
 //! Number of poses that can be rescored and scored before a deadline.
 //!
-//! The search leaves time for all, as far as that can be foreseen. What a pose takes is measured once the search is
-//! done, on the machine as it then is, and the poses that scored least are left out where time is short.
+//! The search leaves the expected time for all. The time of a pose is measured after the search, on the machine as it then
+//! is, and the poses that scored least are left out if time is short.
 
 use crate::options::DockOptions;
 use crate::pose_space::refine::RefinedPose;
@@ -12,7 +12,7 @@ use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::terms::pose::Rescorer;
 use std::time::Instant;
 
-/// Fewest poses that are kept, whatever the time: so many are scored already, for the error of the fast path.
+/// Fewest poses that are kept, whatever the time: this many are scored already, for the error of the fast path.
 pub(crate) const FEWEST: usize = 100;
 /// Poses that are rescored to see how long one takes.
 const PROBES: usize = 48;
@@ -38,7 +38,7 @@ pub(crate) fn poses_in_time(
         let probed = candidates(&peaks, &placed, &[], Some(rescorer)).len();
         started.elapsed().as_secs_f64() / probed.max(1) as f64
     });
-    // Rows are exactly scored: one a cluster, about as many as there are by the search's own scores, or all.
+    // Rows are exactly scored: one per cluster, about as many as there are by the search's own scores, or all.
     let scored = if options.ranking.no_cluster {
         1.0
     } else {
@@ -50,9 +50,9 @@ pub(crate) fn poses_in_time(
     within(deadline.left(), rescoring + scored * scoring, count)
 }
 
-/// How many poses of `count` fit into the seconds left, [`FEWEST`] at least.
+/// The number of `count` poses that fit into the seconds left, [`FEWEST`] at least.
 fn within(left: f64, each: f64, count: usize) -> usize {
-    // Rounding down; infinite where poses take no time.
+    // Rounding down; infinite if poses take no time.
     let fit = left / each;
     if fit >= count as f64 {
         return count;

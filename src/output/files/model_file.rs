@@ -56,7 +56,9 @@ pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Er
         let mut models = ModelWriter::new(&mut file, format, remarks);
         for pair in pairs {
             match complex(pair) {
-                Ok(others) => models.write(&with(pair.molecules[0], &others))?,
+                Ok(others) => {
+                    models.write(&with(pair.molecules[0], &others))?;
+                }
                 Err(error) => {
                     failed = Some(error);
                     break;

@@ -8,7 +8,7 @@ use knotdock_structures::molecule::{Format, Molecule, write_renamed};
 use crate::output::files::whole_file::write_whole;
 use crate::output::records::program::VERSION;
 
-/// The format that a file's name asks for: `.pdb` or `.ent`, `.cif` or `.mmcif`; nothing for other endings.
+/// The format of a file's name: `.pdb` or `.ent`, `.cif` or `.mmcif`; `None` for other endings.
 pub fn format_of_name(path: &Path) -> Option<Format> {
     let ending = path.extension()?.to_str()?.to_ascii_lowercase();
     match ending.as_str() {
@@ -18,16 +18,16 @@ pub fn format_of_name(path: &Path) -> Option<Format> {
     }
 }
 
-/// Writes the atoms that were kept, whole or not at all. Chains keep their names where the format can hold them.
+/// Writes the atoms that were kept, whole or not at all. Chains keep their names if the format can hold them.
 ///
 /// # Errors
-/// [`Error`].
+/// As those of [`write_whole`].
 pub fn write(path: &Path, format: Format, molecule: &Molecule) -> Result<(), Error> {
     let remark = format!(
         "knotdock {VERSION}, what was read of {}",
         molecule.report.file
     );
     write_whole(path, |mut file| {
-        write_renamed(&mut file, format, molecule, std::slice::from_ref(&remark))
+        write_renamed(&mut file, format, molecule, &[remark])
     })
 }

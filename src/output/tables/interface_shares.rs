@@ -1,4 +1,4 @@
-//! `interface.csv`: which residues the best clusters touch.
+//! `interface.csv`: the residues that the best clusters touch.
 
 use std::io;
 

@@ -10,7 +10,7 @@ use knotdock_scoring::sharp::Optimum;
 use knotdock_scoring::terms::pose::{Rescorer, Workspace};
 use rayon::prelude::*;
 
-/// Notes the optimum of each candidate. If an exact fit stands out, or sharp fits are requested, the candidates that score
+/// Records the optimum of each candidate. If an exact fit stands out, or sharp fits are requested, the candidates that score
 /// more in their optima move there, and all are sorted anew.
 pub(crate) fn settle(
     candidates: &mut [Candidate],

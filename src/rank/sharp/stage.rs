@@ -1,4 +1,4 @@
-//! Optima of the best poses of a run, and the evidence that they are.
+//! Optima of the best poses of a run, and their evidence.
 
 use super::evidence::Evidence;
 use crate::rank::candidates::Candidate;
@@ -10,28 +10,28 @@ use rayon::prelude::*;
 /// Poses that descend: the best of the run by the soft score.
 const DESCENDING: usize = 250;
 /// Places whose neighbourhood is tried, too: those of the best optima.
-const SEVERAL: usize = 20;
+const MAX_TRIED: usize = 20;
 /// RMSD of the ligand in Å within which two optima are one place.
 const PLACE: f64 = 2.5;
 
-/// What the sharp stage reads of two bodies.
+/// Two bodies as the sharp stage reads them.
 #[derive(Clone, Copy)]
 pub(crate) struct SharpInputs<'a> {
     /// Receptor and ligand.
     pub bodies: [&'a Knots; 2],
-    /// The parts of their atoms in hydrogen bonds.
+    /// The roles of their atoms in hydrogen bonds.
     pub polar: [&'a [PolarAtom]; 2],
 }
 
 /// Optima of a run's best poses.
 pub(crate) struct Optima {
-    /// The optimum of each of the first candidates; `None` where nothing touches.
+    /// The optimum of each of the first candidates; `None` if nothing touches.
     pub of_candidates: Vec<Option<Optimum>>,
-    /// The best place against the others; `None` where there are too few.
+    /// The best place against the others; `None` if there are too few.
     pub evidence: Option<Evidence>,
 }
 
-/// Lets the best candidates of a search of so many rotations descend, and looks about the places of the best optima.
+/// Lets the best candidates of a search of this many rotations descend, and searches about the places of the best optima.
 pub(crate) fn optima(
     inputs: &SharpInputs,
     candidates: &[Candidate],
@@ -48,7 +48,7 @@ pub(crate) fn optima(
         .collect_into_vec(&mut of_candidates);
     let firsts = first_of_places(&of_candidates, body);
     let tried: Vec<(usize, Optimum)> = firsts
-        .get(..SEVERAL)
+        .get(..MAX_TRIED)
         .unwrap_or(&firsts)
         .par_iter()
         .map_init(PairList::default, |list, &(index, first)| {
@@ -58,14 +58,10 @@ pub(crate) fn optima(
         })
         .collect();
     for (index, optimum) in tried {
-        if let Some(of_candidate) = of_candidates.get_mut(index) {
-            *of_candidate = Some(optimum);
-        }
+        of_candidates[index] = Some(optimum);
     }
-    let energies: Vec<f64> = first_of_places(&of_candidates, body)
-        .iter()
-        .map(|(_, optimum)| optimum.energy.total())
-        .collect();
+    let firsts = first_of_places(&of_candidates, body).into_iter();
+    let energies: Vec<f64> = firsts.map(|(_, optimum)| optimum.energy.total()).collect();
     Optima {
         evidence: Evidence::of(&energies, rotations),
         of_candidates,

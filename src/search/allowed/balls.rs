@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 /// Largest distance in Å of an atom from the middle of its clump.
 const CLUMP: f64 = 4.0;
 /// Most balls of a restraint; with more of them clumps grow.
-const MOST: usize = 2000;
+const MAX_BALLS: usize = 2000;
 /// Pairs of atoms that may bring an effective distance below the shortest.
 const PAIRS: usize = 64;
 
@@ -51,7 +51,7 @@ pub(super) fn of_restraint(
                 }));
             }
         }
-        if balls.len() <= MOST.max(restraint.pairs.len()) {
+        if balls.len() <= MAX_BALLS.max(restraint.pairs.len()) {
             return balls;
         }
         widest *= 1.5;
