@@ -46,9 +46,6 @@ pub fn read_bounded(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
 
 /// As [`read_bounded`], for a name that the program expects in a folder: a pipe or a device is an
 /// [`ErrorKind::InvalidInput`] and not opened, since the opening of a pipe waits for whoever writes to it.
-///
-/// # Errors
-/// As [`read_bounded`].
 pub fn read_bounded_file(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let kind = fs::metadata(path)?.file_type();
     if kind.is_dir() {
@@ -64,9 +61,6 @@ pub fn read_bounded_file(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
 }
 
 /// As [`read_bounded`], of a text in UTF-8; any other is an [`ErrorKind::InvalidData`].
-///
-/// # Errors
-/// As [`read_bounded`].
 pub fn read_bounded_text(path: &Path, limit: u64) -> io::Result<String> {
     String::from_utf8(read_bounded(path, limit)?)
         .map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not text in UTF-8"))

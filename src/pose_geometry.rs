@@ -34,9 +34,6 @@ pub struct PoseGeometry {
 
 impl PoseGeometry {
     /// Measures a pose.
-    ///
-    /// # Errors
-    /// [`KnotsError`] when a molecule has no usable atom.
     pub fn of(receptor: &Molecule, ligand: &Molecule, pose: &Pose) -> Result<Self, KnotsError> {
         let placed = ligand.map_positions(|x| pose.apply(x));
         let [receptor_area, ligand_area] = receptor.buried_areas(&placed, SURFACE_POINTS);

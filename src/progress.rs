@@ -3,9 +3,9 @@
 /// Receives how far a run has come.
 pub trait Progress: Sync {
     /// A stage of `total` steps begins.
-    fn stage(&self, name: &str, total: u64);
+    fn stage(&self, _name: &str, _total: u64) {}
     /// Reports that further steps are done.
-    fn advance(&self, by: u64);
+    fn advance(&self, _by: u64) {}
     /// Called between stages and rotations: an error ends the run.
     ///
     /// # Errors
@@ -30,8 +30,4 @@ pub enum Ended {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoProgress;
 
-impl Progress for NoProgress {
-    fn stage(&self, _: &str, _: u64) {}
-
-    fn advance(&self, _: u64) {}
-}
+impl Progress for NoProgress {}

@@ -198,9 +198,6 @@ fn default_offset(epsilons: [f64; 2], features: [f64; 2]) -> f64 {
 }
 
 /// Samples two parts for docking.
-///
-/// # Errors
-/// [`MeshSceneError`].
 pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair, MeshSceneError> {
     let extents = shapes.map(|shape| match shape {
         Shape::Solid(solid) => {

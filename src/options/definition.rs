@@ -51,9 +51,6 @@ pub trait Rule<T> {
     fn read(&self, text: &str, folder: &Path) -> Result<T, Error>;
 
     /// Refuses a value that no text could give, with the demand on it.
-    ///
-    /// # Errors
-    /// For such a value.
     fn check(&self, _value: &T) -> Result<(), Error> {
         Ok(())
     }
@@ -165,17 +162,11 @@ impl Definition {
     }
 
     /// Sets the option from text. Files are looked for from `folder`.
-    ///
-    /// # Errors
-    /// As those of [`Rule::read`].
     pub fn read(&self, options: &mut DockOptions, text: &str, folder: &Path) -> Result<(), Error> {
         (self.access.read)(options, text, folder)
     }
 
     /// As [`Self::read`], with errors for a command line, which name the option.
-    ///
-    /// # Errors
-    /// As those of [`Self::read`].
     pub fn set(&self, options: &mut DockOptions, text: &str) -> Result<(), Error> {
         let read = self.read(options, text, Path::new(""));
         read.map_err(|error| match error.file() {

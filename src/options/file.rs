@@ -50,18 +50,12 @@ impl DockOptions {
 
     /// Sets the options of a text in TOML; returns them. Files that it names are looked for from the folder of `path`,
     /// which errors name.
-    ///
-    /// # Errors
-    /// As those of [`Self::read_file`].
     pub fn read_toml(&mut self, text: &str, path: &Path) -> Result<Vec<GivenOption>, Error> {
         self.read_entries(text, path, path.parent().unwrap_or(Path::new("")))
     }
 
     /// Sets the option of a line such as `terms.contact_weight=1.5`; returns it. A file that it names is looked for from
     /// the working directory. Errors name the line as a file.
-    ///
-    /// # Errors
-    /// As those of [`Self::read_file`].
     pub fn read_line(&mut self, line: &str) -> Result<Vec<GivenOption>, Error> {
         let read = self.read_entries(line, Path::new(line), Path::new(""));
         // The line of a file that the option names stays.

@@ -51,9 +51,6 @@ impl Preset {
     }
 
     /// Sets the options of the preset; returns them.
-    ///
-    /// # Errors
-    /// None: a test reads every preset.
     pub fn apply(self, options: &mut DockOptions) -> Result<Vec<GivenOption>, Error> {
         options.read_toml(self.text, Path::new("preset"))
     }

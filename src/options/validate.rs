@@ -62,9 +62,6 @@ impl DockOptions {
     }
 
     /// Refuses values out of range, and options that do not go together.
-    ///
-    /// # Errors
-    /// [`Error`] for the first.
     pub fn validate(&self) -> Result<(), Error> {
         self.check_ranges()?;
         let SearchOptions {

@@ -222,9 +222,6 @@ impl Rule<u64> for Size {
 pub struct AllOr(pub Option<usize>);
 
 /// A whole number above zero, or `all`.
-///
-/// # Errors
-/// What the text must be.
 pub fn all_or_at_least_one(text: &str) -> Result<AllOr, Error> {
     if text == "all" {
         return Ok(AllOr(None));
@@ -241,9 +238,6 @@ fn split_unit(text: &str, is_unit: impl Fn(char) -> bool) -> (&str, &str) {
 }
 
 /// A time in seconds, from text such as `5`, `5s`, `2min` or `1h`; a bare number is seconds, and a run says so.
-///
-/// # Errors
-/// What is wrong with the text.
 pub fn duration(text: &str) -> Result<f64, String> {
     let (digits, unit) = split_unit(text, |c| c.is_ascii_alphabetic() && c != 'e');
     let unit = match unit {
@@ -267,9 +261,6 @@ pub fn duration(text: &str) -> Result<f64, String> {
 const LONGEST: f64 = 1e9;
 
 /// A size in bytes from text such as `800000000`, `1.5G` (1000^3) or `512MiB` (1024^2).
-///
-/// # Errors
-/// What is wrong with the text.
 pub fn size(text: &str) -> Result<u64, String> {
     let (digits, unit) = split_unit(text, |c| !c.is_ascii_digit() && c != '.');
     let scale = match unit.to_ascii_lowercase().as_str() {

@@ -105,9 +105,6 @@ pub enum Bodies<'a> {
 impl Bodies<'_> {
     /// Writes the bodies in the poses of `rows` into a folder, for rings all copies; molecules in a format, if one is
     /// given.
-    ///
-    /// # Errors
-    /// As those of [`write_complexes`].
     pub fn write(
         self,
         rows: &[PoseRow],
@@ -167,9 +164,6 @@ impl<'a> FinishedRun<'a> {
     }
 
     /// Writes tables, complexes and record into the staging folder of a run.
-    ///
-    /// # Errors
-    /// [`Error`] for a file that cannot be written.
     pub fn stage(&self, staging: &Stage) -> Result<StagedRun, Error> {
         let Self {
             options,
@@ -209,9 +203,6 @@ impl<'a> FinishedRun<'a> {
     }
 
     /// `run.json`, with the checksums of the other files by their paths and the chain names in the complexes.
-    ///
-    /// # Errors
-    /// [`Error`] for a part that does not go into JSON: a fault of the program.
     pub fn record(
         &self,
         files: BTreeMap<String, String>,
@@ -255,9 +246,6 @@ impl<'a> FinishedRun<'a> {
 }
 
 /// Writes the scripts that show complexes in other programs, if there are any.
-///
-/// # Errors
-/// As those of [`Stage::write`].
 pub fn write_scripts(staging: &Stage, complexes: &[ViewedComplex]) -> Result<(), Error> {
     if !complexes.is_empty() {
         staging.write(PYMOL, |file| {

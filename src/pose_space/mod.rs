@@ -70,9 +70,6 @@ impl PoseSpace {
     }
 
     /// The plan on the grid that serves the space best: turned to fit the receptor, if any rotation is searched.
-    ///
-    /// # Errors
-    /// [`PlanError`] for too large a grid.
     pub fn grid_of(&self, plan: Plan, receptor: &Knots) -> Result<Plan, PlanError> {
         match self {
             Self::Free => plan.fitted(receptor),

@@ -4,16 +4,13 @@
 //! [`PRIORS`], which docking runs and `knotdock inspect` read.
 
 pub mod active_residues;
-pub mod antibody;
+mod antibody;
 pub mod flexible_regions;
-pub mod peptidase;
+mod peptidase;
 pub mod residue_roles;
 pub mod restrained;
 #[cfg(test)]
 mod test_chains;
-
-pub use antibody::{Antibody, PARATOPE_EDGE, VariableDomain, VariableKind};
-pub use peptidase::ActiveSite;
 
 use knotdock_structures::molecule::Molecule;
 

@@ -25,29 +25,30 @@ const TOGETHER: f64 = 12.0;
 
 /// The active site of a peptidase.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ActiveSite {
-    /// The family, by its name in MEROPS; M10 stands for all metzincins.
-    pub family: &'static str,
+struct ActiveSite {
+    /// The family, by its name in MEROPS; M10 represents all metzincins.
+    family: &'static str,
     /// An enzyme that the family is known by.
-    pub known_by: &'static str,
+    known_by: &'static str,
     /// Catalytic residues, each as `chain:number` by the author's names, with the insertion code.
-    pub residues: Vec<String>,
+    residues: Vec<String>,
     /// The indices of the atoms of each catalytic residue in the molecule.
     #[serde(skip)]
-    pub atoms: Vec<Vec<usize>>,
+    atoms: Vec<Vec<usize>>,
 }
 
 impl ActiveSite {
     /// The active sites of peptidases in a molecule, by family and then in file order; copies of an enzyme have one
     /// each.
-    pub fn all(molecule: &Molecule) -> Vec<Self> {
+    fn all(molecule: &Molecule) -> Vec<Self> {
         let chains = molecule.peptide_chains();
-        let chains: Vec<(&PeptideChain<'_>, Vec<char>)> = chains
+        let sequence = |chain: &PeptideChain<'_>| chain.sequence().chars().collect();
+        let chains: Vec<_> = chains
             .iter()
-            .map(|chain| (chain, chain.sequence().chars().collect()))
+            .map(|chain| (chain, sequence(chain)))
             .collect();
         let mut sites = Vec::new();
-        for family in families() {
+        for family in FAMILIES.iter() {
             let of = |anchor: &Anchor| places(molecule, anchor, &chains);
             let found: Vec<Vec<Vec<CatalyticResidue>>> = family.anchors.iter().map(of).collect();
             for catalytic in together(&found) {
@@ -81,7 +82,7 @@ impl ActiveSite {
 }
 
 /// Peptidases bind proteins at their active sites.
-pub struct PeptidasePrior;
+pub(super) struct PeptidasePrior;
 
 impl Prior for PeptidasePrior {
     fn sites(&self, molecule: &Molecule) -> Vec<Site> {
@@ -219,13 +220,10 @@ struct Family {
 }
 
 /// The families, in the order of the table.
-fn families() -> &'static [Family] {
-    static FAMILIES: LazyLock<Vec<Family>> = LazyLock::new(|| {
-        // The table is part of the program, and a test reads it.
-        parse(TABLE).unwrap_or_else(|| unreachable!("the table of peptidase families"))
-    });
-    &FAMILIES
-}
+static FAMILIES: LazyLock<Vec<Family>> = LazyLock::new(|| {
+    // The table is part of the program, and a test reads it.
+    parse(TABLE).unwrap_or_else(|| unreachable!("the table of peptidase families"))
+});
 
 /// The families of a table; `None` if a row cannot be read.
 fn parse(table: &str) -> Option<Vec<Family>> {

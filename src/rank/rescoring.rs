@@ -4,8 +4,13 @@ use crate::options::DockOptions;
 use crate::priors::active_residues::ActiveResidues;
 use crate::priors::flexible_regions::FlexibleRegions;
 use crate::priors::restrained::Restrained;
-use knotdock_scoring::terms::pose::{POSE_TERMS, Rescorer, TermDefinition, TermInputs};
+use crate::priors::{self, SiteRole};
+use knotdock_scoring::terms::pose::{
+    DistanceRestraints, POSE_TERMS, Rescorer, TermDefinition, TermInputs,
+};
 use knotdock_structures::Knots;
+use knotdock_structures::knots::KnotsError;
+use knotdock_structures::molecule::{Labels, Molecule, Termini, UnresolvedResidues};
 use serde::Serialize;
 
 /// A pose term that acts in a docking, with its weight.
@@ -80,4 +85,39 @@ impl<'a> Rescoring<'a> {
         let shares = self.acting_definitions().map(|(term, _)| term.time_share);
         shares.fold(0.0, f64::max)
     }
+}
+
+/// Each pose term with the number of parts that it reads of a molecule, in the order of the registry.
+///
+/// Active residues are those of the sites that priors favour.
+pub fn term_counts(
+    molecule: &Molecule,
+    labels: &Labels,
+    unresolved: &UnresolvedResidues,
+    termini: &Termini,
+) -> Result<Vec<(&'static TermDefinition, usize)>, KnotsError> {
+    let knots = molecule.knots()?;
+    let knots = knots.with_labels(Vec::new(), labels.contact_types.clone())?;
+    let knots = knots.with_atom_kinds(labels.atom_kinds.clone())?;
+    let sites = priors::sites(molecule).into_iter();
+    let favoured = sites.filter(|site| site.role == SiteRole::Favoured);
+    let active: Vec<_> = favoured.map(|site| [site.residues, Vec::new()]).collect();
+    let inputs = TermInputs {
+        bodies: [&knots, &knots],
+        fine_contact_potential: None,
+        atom_pair_potential: None,
+        active_residues: &active,
+        unresolved: [&unresolved.segments, &[]],
+        termini: [&termini.atoms, &[]],
+        distance_restraints: DistanceRestraints::none(),
+        predicted: [&[], &[]],
+        membrane: None,
+    };
+    let count = |term: &'static TermDefinition| {
+        let [count, _] = (term.count)(&inputs);
+        (term, count)
+    };
+    // Terms that read what only options give have no part of a molecule.
+    let of_molecules = POSE_TERMS.iter().filter(|term| term.is_shown_always);
+    Ok(of_molecules.map(count).collect())
 }

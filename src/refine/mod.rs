@@ -80,9 +80,6 @@ struct Place {
 
 impl<'a> Refiner<'a> {
     /// Prepares receptor and ligand, each in its file's frame.
-    ///
-    /// # Errors
-    /// [`KnotsError`] when a molecule has no usable atom.
     pub fn new(molecules: [&'a Molecule; 2], options: RefineOptions) -> Result<Self, KnotsError> {
         let [receptor, ligand] = molecules;
         let repacker = || Repacker::new(receptor, ligand, RepackOptions::default());

@@ -72,9 +72,6 @@ pub(super) fn no_graphics(error: impl std::fmt::Display) -> Error {
 
 impl ScanEngine {
     /// The engines of a plan.
-    ///
-    /// # Errors
-    /// [`Error`] for a graphics processor that is missing or cannot be used.
     pub fn new(plan: &SearchPlan, cpu: CpuEngine) -> Result<Self, Error> {
         let mut engine = Self {
             cpu,

@@ -51,9 +51,6 @@ impl<W: io::Write> TableWriter<W> {
     }
 
     /// Writes a row.
-    ///
-    /// # Errors
-    /// Those of the stream.
     pub fn row<T: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = T>) -> io::Result<()> {
         for cell in cells {
             self.0.write_field(quoted(cell.as_ref()).as_bytes())?;
@@ -63,9 +60,6 @@ impl<W: io::Write> TableWriter<W> {
     }
 
     /// Hands on all that was written.
-    ///
-    /// # Errors
-    /// Those of the stream.
     pub fn flush(&mut self) -> io::Result<()> {
         self.0.flush()
     }

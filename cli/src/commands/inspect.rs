@@ -8,7 +8,7 @@ use crate::tables::report::counted;
 use clap::{ArgGroup, Args};
 use knotdock::output::files::molecule_file;
 use knotdock::priors::{Findings, PRIORS};
-use knotdock::rank::term_counts;
+use knotdock::rank::rescoring::term_counts;
 use knotdock_scoring::terms::pose::TermDefinition;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
@@ -146,7 +146,7 @@ impl Inspection {
         let findings = findings.collect();
         let unresolved = molecule.unresolved_residues();
         let termini = molecule.termini();
-        let counts = term_counts::of(molecule, &labels, &unresolved, &termini);
+        let counts = term_counts(molecule, &labels, &unresolved, &termini);
         Ok(Self {
             counts: counts.map_err(Error::input)?,
             volume: union_volume(&molecule.knots().map_err(Error::input)?),

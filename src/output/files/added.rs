@@ -161,9 +161,6 @@ fn move_to(from: &Path, to: &Path) -> io::Result<()> {
 
 /// Writes a file that the user named, whole; into a run's directory as an addition. Returns the leftovers of ended commands
 /// there.
-///
-/// # Errors
-/// As those of [`write_whole`] and [`Addition::place`].
 pub fn write_named(
     path: &Path,
     fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
@@ -179,9 +176,6 @@ pub fn write_named(
 }
 
 /// Copies files into a run's directory as additions.
-///
-/// # Errors
-/// As those of [`Addition::place`].
 pub fn add_files(run: &Path, files: &[PathBuf]) -> Result<(), Error> {
     let addition = Addition::open(run, Some(run))?;
     for path in files {

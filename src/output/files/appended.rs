@@ -22,9 +22,6 @@ pub struct AppendedFile {
 
 impl AppendedFile {
     /// Opens a file after its first `length` bytes; the rest is cut off. A missing file is made; no link is followed.
-    ///
-    /// # Errors
-    /// [`Error`] for a file that cannot be opened or cut.
     pub fn open(path: &Path, length: u64) -> Result<Self, Error> {
         let failed = |source| file_error::unwritable(path, source);
         point("open", path).map_err(failed)?;
@@ -59,9 +56,6 @@ impl AppendedFile {
     }
 
     /// Appends an entry, to the device; returns its start and end. One that cannot be written whole is taken back.
-    ///
-    /// # Errors
-    /// [`Error`] for such an entry.
     pub fn append(&mut self, entry: &[u8]) -> Result<(u64, u64), Error> {
         let written = self.write(entry);
         if written.is_err() {

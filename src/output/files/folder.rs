@@ -13,9 +13,6 @@ use super::disk;
 const MAX_LINE: usize = 1 << 20;
 
 /// The names of the entries of a folder, in their order.
-///
-/// # Errors
-/// [`Error`] for a folder that cannot be read.
 pub fn names_in(folder: &Path) -> Result<Vec<String>, Error> {
     let entries = disk::entries(folder).map_err(|source| file_error::unwritable(folder, source))?;
     let names = entries.iter().filter_map(|(path, _)| path.file_name());
@@ -24,9 +21,6 @@ pub fn names_in(folder: &Path) -> Result<Vec<String>, Error> {
 }
 
 /// Makes a folder and those above it that are missing.
-///
-/// # Errors
-/// [`Error`] for a folder that cannot be made.
 pub fn make_folder(path: &Path) -> Result<(), Error> {
     let made = disk::create_dir_all(path).map(drop);
     made.map_err(|source| file_error::unwritable(path, source))

@@ -19,9 +19,6 @@ pub fn format_of_name(path: &Path) -> Option<Format> {
 }
 
 /// Writes the atoms that were kept, whole or not at all. Chains keep their names if the format can hold them.
-///
-/// # Errors
-/// As those of [`write_whole`].
 pub fn write(path: &Path, format: Format, molecule: &Molecule) -> Result<(), Error> {
     let remark = format!(
         "knotdock {VERSION}, what was read of {}",

@@ -62,9 +62,6 @@ impl Stage {
 
     /// SHA-256 of each file written so far, by its path from the folder with `/` between folders. The record holds them
     /// as `files`. A folder of runs has its own records, and is left out.
-    ///
-    /// # Errors
-    /// [`Error`] for a file that cannot be read.
     pub fn checksums(&self) -> Result<BTreeMap<String, String>, Error> {
         let failed = |source| file_error::writing(&self.shown, source);
         let mut checksums = BTreeMap::new();
@@ -264,9 +261,6 @@ pub(super) fn locked(directory: &Path) -> Result<(PathBuf, NewFolders, Lock), Er
 }
 
 /// Puts an older run back that a kill left aside, so that its directory can be read.
-///
-/// # Errors
-/// [`Error`] for a run that cannot be put back.
 pub fn put_back(directory: &Path) -> Result<(), Error> {
     let lock = lock_beside(directory);
     if lock.symlink_metadata().is_ok() {

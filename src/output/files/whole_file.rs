@@ -102,9 +102,6 @@ pub struct StagedFile {
 impl StagedFile {
     /// Writes a file, to the device, beside its place. A stream (`/dev/stdout`, a pipe) is written to in place. A file that
     /// is replaced leaves its mode.
-    ///
-    /// # Errors
-    /// [`Error`] for a link, and for a file that cannot be made or written.
     pub fn write(
         path: &Path,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -124,9 +121,6 @@ impl StagedFile {
     }
 
     /// As [`StagedFile::write`], under a name that no user chose: any but a regular file there is refused.
-    ///
-    /// # Errors
-    /// As [`StagedFile::write`].
     pub fn own(
         path: &Path,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -158,9 +152,6 @@ impl StagedFile {
     }
 
     /// Whether a file with the same content is in its place already.
-    ///
-    /// # Errors
-    /// [`Error`] if one of them cannot be read.
     pub fn is_there(&self) -> Result<bool, Error> {
         let (Some(file), true) = (&self.file, self.replaces) else {
             return Ok(false);
@@ -171,9 +162,6 @@ impl StagedFile {
     }
 
     /// Puts the file into its place, at one stroke.
-    ///
-    /// # Errors
-    /// [`Error`] if that fails.
     pub fn place(self) -> Result<(), Error> {
         let Some(file) = self.file else {
             return Ok(());
@@ -192,9 +180,6 @@ impl StagedFile {
 }
 
 /// Writes a single file whole: beside `path`, then moved there at one stroke.
-///
-/// # Errors
-/// As [`StagedFile::write`].
 pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -234,9 +219,6 @@ pub(super) fn parent(path: &Path) -> &Path {
 }
 
 /// Writes a value as indented JSON with a line end.
-///
-/// # Errors
-/// Those of the stream.
 pub fn to_json(stream: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *stream, value)?;
     writeln!(stream)

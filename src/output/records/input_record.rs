@@ -1,14 +1,11 @@
 //! Input files as a run records them: their paths and checksums.
 
 use knotdock_structures::Error;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use knotdock_structures::molecule::{Format, InputSpec, Molecule, file_bytes, write_molecule};
 use serde::{Deserialize, Serialize};
 
-use crate::memory_size::in_words;
 use crate::output::files::checksum::{sha256, sha256_of_file};
 use crate::output::files::whole_file::is_stream;
 use crate::plain_path::plain_path;
@@ -42,9 +39,6 @@ impl InputRecord {
     }
 
     /// The record of a molecule: of its file, or of one made in memory with the checksum of its atoms in mmCIF.
-    ///
-    /// # Errors
-    /// [`Error`] if the file cannot be read again.
     pub fn of_molecule(molecule: &Molecule) -> Result<Self, Error> {
         if let Some(spec) = &molecule.report.source {
             return Ok(Self::new(spec, &file_bytes(&spec.path)?));
@@ -105,7 +99,7 @@ impl InputRecord {
                 "dock again from a file, or put what was read under that name beside the directory of the run",
             );
         }
-        let sum = sha256_of(path).map_err(|error| {
+        let sum = sha256_of_file(path).map_err(|error| {
             Error::input(format!("cannot read {}: {error}", path.display()))
                 .at(path)
                 .help("put the file where the run found it, or beside the directory of the run")
@@ -121,19 +115,6 @@ impl InputRecord {
         }
         Ok(())
     }
-}
-
-/// Most bytes of an input: no reader of structures or meshes takes more.
-const MAX_INPUT: u64 = 4 << 30;
-
-/// SHA-256 of a file, in hexadecimal.
-fn sha256_of(path: &Path) -> io::Result<String> {
-    if fs::metadata(path)?.len() > MAX_INPUT {
-        let most = in_words(MAX_INPUT);
-        let message = format!("it has more than {most}, the most that are read of an input");
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
-    }
-    sha256_of_file(path)
 }
 
 /// The native complex that the poses were measured against.
@@ -164,6 +145,7 @@ impl NativeRecord {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::fs;
     use std::fs;
 
     #[test]

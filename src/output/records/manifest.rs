@@ -44,9 +44,6 @@ pub struct InputEntry {
 
 impl InputEntry {
     /// The entry of a molecule.
-    ///
-    /// # Errors
-    /// [`Error`] for a report that does not go into JSON: a fault of the program.
     pub fn of_molecule(record: InputRecord, molecule: &Molecule) -> Result<Self, Error> {
         let mut report = serde_json::to_value(&molecule.report).map_err(Error::machine)?;
         if let Some(report) = report.as_object_mut() {

@@ -11,9 +11,6 @@ pub const INTERFACE: &str = "interface.csv";
 
 /// Writes a row for each residue of either side: `side`, `chain`, `residue` (number and insertion code), `name`,
 /// `clusters` (that touch it) and `share` (of those that were counted).
-///
-/// # Errors
-/// Those of the stream.
 pub fn write_shares(
     sides: [(&str, &[ResidueShare]); 2],
     stream: &mut dyn io::Write,

@@ -77,9 +77,6 @@ impl PoseTable {
     }
 
     /// Writes the table to a stream.
-    ///
-    /// # Errors
-    /// Those of the stream.
     pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
         let mut writer = TableWriter::new(stream);
         writer.row(&self.header)?;

@@ -29,9 +29,6 @@ pub(crate) fn no_value(path: &Path, line: u64, column: &str, field: &str, expect
 
 impl PoseTable {
     /// Reads a table, finding its columns by name; columns that are not needed are kept as they stand.
-    ///
-    /// # Errors
-    /// [`Error`], with file and line.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let bytes = read_bounded(path, MAX_POSES).map_err(|error| {
             Error::input(format!("cannot read {}: {error}", path.display()))
@@ -79,9 +76,6 @@ impl PlacementColumns {
     };
 
     /// Finds the columns by their names.
-    ///
-    /// # Errors
-    /// [`Error`] for a column that is missing.
     pub fn find(path: &Path, header: &StringRecord) -> Result<Self, Error> {
         let mut found = Self::UNNAMED;
         for (column, place) in found.quaternion.iter_mut().chain(&mut found.translation) {

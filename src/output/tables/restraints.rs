@@ -37,9 +37,6 @@ pub fn met(plan: &DockPlan, poses: &[RankedPose]) -> Option<Column> {
 }
 
 /// Writes `restraints.csv`: a row per pose and restraint, with the effective distance and its bounds in Å.
-///
-/// # Errors
-/// Those of the stream.
 pub fn write_to(
     plan: &DockPlan,
     poses: &[RankedPose],

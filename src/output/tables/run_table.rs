@@ -88,9 +88,6 @@ impl<'a> RunTable<'a> {
     }
 
     /// Writes the table to a stream.
-    ///
-    /// # Errors
-    /// Those of the stream.
     pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
         let mut table = TableWriter::new(stream);
         table.row(&self.header())?;
