@@ -2,7 +2,7 @@
 //!
 //! A member is the run of one conformation of the receptor with one of the ligand. Its poses are of its own files. To
 //! cluster across members, each conformation is superposed on the first of its side, which takes every pose into the
-//! frame of the first two ([`joined`]).
+//! frame of the first two (`joined`).
 
-pub mod joined;
+mod joined;
 pub mod table;

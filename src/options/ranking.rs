@@ -1,4 +1,4 @@
-//! Options on ranking: how poses become rows.
+//! Options on ranking, how poses become rows, and on the files of a run.
 
 use serde::{Deserialize, Serialize};
 
@@ -40,4 +40,17 @@ pub enum SharpChoice {
     On,
     /// None are made.
     Off,
+}
+
+options! {
+    /// What a run writes.
+    OutputOptions as output, "Output", Both {
+        /// Complexes to write to top/.
+        write_top: usize = 10, "COUNT", NOT_NEGATIVE;
+        /// Add the diagnostic columns to poses.csv.
+        diagnostics: bool = false, "", Flag;
+        /// Write no report.html.
+        #[serde(default)]
+        no_report: bool = false, "", Flag;
+    }
 }

@@ -15,7 +15,7 @@ use crate::restraints::{Crosslink, RequiredCount, RestraintFile, TblBounds};
 
 /// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/research/effects.md,
 /// "Active sites").
-pub(crate) const PEPTIDASE_WEIGHT: f64 = 500.0;
+const PEPTIDASE_WEIGHT: f64 = 500.0;
 
 options! {
     /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.

@@ -1,13 +1,16 @@
 //! The contacts of every pose of a run.
 
 use std::collections::HashSet;
+use std::io;
 
 use knotdock_structures::molecule::Molecule;
 use rayon::prelude::*;
 
 use crate::interface::{CONSENSUS, Contact, ContactFinder, ResidueShare, residue_shares};
+use crate::output::tables::fields::number;
 use crate::output::tables::poses::PoseTable;
 use crate::pose_space::arrangement::Arrangement;
+use crate::table_text::cells::TableWriter;
 
 /// Rows whose contacts are listed, and that reports show.
 pub const MAX_ROWS: usize = 2000;
@@ -55,5 +58,26 @@ impl<'a> RunContacts<'a> {
     pub fn shares(&self) -> [Vec<ResidueShare>; 2] {
         let clusters = self.firsts.iter().map(|&row| self.rows[row].as_slice());
         residue_shares(&self.finder, &clusters.collect::<Vec<_>>())
+    }
+
+    /// Writes `interface.csv`, a row per residue of either side: `side`, `chain`, `residue` (number and insertion code),
+    /// `name`, `clusters` (that touch it) and `share` (of those that were counted).
+    pub(crate) fn write_shares(&self, stream: &mut dyn io::Write) -> io::Result<()> {
+        let mut table = TableWriter::new(stream);
+        table.row(["side", "chain", "residue", "name", "clusters", "share"])?;
+        for (side, shares) in ["receptor", "ligand"].into_iter().zip(self.shares()) {
+            for share in shares {
+                let residue = &share.residue;
+                table.row([
+                    side,
+                    &residue.chain,
+                    &residue.number,
+                    &residue.name,
+                    &share.clusters.to_string(),
+                    &number(share.share),
+                ])?;
+            }
+        }
+        table.flush()
     }
 }

@@ -25,7 +25,6 @@ use crate::output::records::manifest::{
 use crate::output::records::program::Program;
 use crate::output::run_contacts::RunContacts;
 use crate::output::tables::fields::Column;
-use crate::output::tables::interface_shares::{INTERFACE, write_shares};
 use crate::output::tables::poses::PoseRow;
 use crate::output::tables::restraints;
 use crate::output::tables::run_table::{RunTable, pose_rows};
@@ -190,9 +189,7 @@ impl<'a> FinishedRun<'a> {
             write_scripts(staging, &viewed)?;
         }
         if let Some(contacts) = self.contacts {
-            let [receptor, ligand] = contacts.shares();
-            let sides = [("receptor", &receptor[..]), ("ligand", &ligand[..])];
-            staging.write(INTERFACE, |file| write_shares(sides, file))?;
+            staging.write("interface.csv", |file| contacts.write_shares(file))?;
         }
         let record = self.record(staging.checksums()?, written.chains.as_ref())?;
         staging.write("run.json", |file| to_json(file, &record))?;

@@ -94,15 +94,11 @@ impl Antibody {
 /// Antibodies bind by their CDRs and the atoms around them.
 pub(super) struct AntibodyPrior;
 
-/// Score of a contact away from the paratope, in contacts: about that of a contact.
-const WEIGHT: f64 = 1.0;
-
 impl Prior for AntibodyPrior {
     fn sites(&self, molecule: &Molecule) -> Vec<Site> {
         let site = |antibody: Antibody| Site {
             role: SiteRole::Exclusive,
             residues: molecule.atoms_by_residue(&antibody.paratope),
-            weight: WEIGHT,
             reason: antibody.reason(),
             record: json!(antibody.domains),
         };

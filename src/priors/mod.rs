@@ -30,8 +30,6 @@ pub struct Site {
     pub role: SiteRole,
     /// Its residues in file order, each by the indices of those atoms that belong to the site.
     pub residues: Vec<Vec<usize>>,
-    /// Score at the default options: of a contact elsewhere (exclusive), or of touching all residues (favoured).
-    pub weight: f64,
     /// The kind of the molecule and its site, in words that follow "the receptor is".
     pub reason: String,
     /// Entry of `run.json`.
@@ -88,7 +86,7 @@ mod tests {
             let has_site = !prior.sites(&trypsin).is_empty();
             assert_eq!(!prior.findings(&trypsin).lines.is_empty(), has_site);
             for site in prior.sites(&trypsin) {
-                assert!(site.weight > 0.0 && !site.residues.is_empty() && !site.reason.is_empty());
+                assert!(!site.residues.is_empty() && !site.reason.is_empty());
                 assert!(
                     site.residues
                         .iter()

@@ -9,7 +9,6 @@
 //! Families with sites deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or with small substrates besides
 //! (lipases, esterases) are left out.
 
-use crate::options::PEPTIDASE_WEIGHT;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -91,7 +90,6 @@ impl Prior for PeptidasePrior {
             reason: format!("a peptidase, {}", site.in_words()),
             record: json!(site),
             residues: site.atoms,
-            weight: PEPTIDASE_WEIGHT,
         };
         ActiveSite::all(molecule).into_iter().map(site).collect()
     }
