@@ -450,7 +450,7 @@ mod tests {
     }
 
     proptest! {
-        /// Any text is read or refused, and what is read can be used.
+        /// Any text is read or refused, and all predictions that are read can be used.
         #[test]
         fn any_text_is_read_or_refused(
             words in prop::collection::vec(prop::sample::select(vec![

@@ -71,7 +71,7 @@ mod tests {
             .collect()
     }
 
-    /// Work of as many threads as the caller's pool has is done there; other work has threads of its own.
+    /// Work of as many threads as the caller's pool has is done there; other work has new threads.
     #[test]
     fn work_is_done_on_as_many_threads_as_were_wanted() {
         let outer = on(3, || {

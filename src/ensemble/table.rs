@@ -1,4 +1,4 @@
-//! One table of the poses of all members, in the columns of their own tables.
+//! One table of the poses of all members, in the columns of their tables.
 //!
 //! Beside these it has `receptor_model`, `ligand_model`, `member` and `member_rank`: the conformations, the run, and the
 //! row of its table. Poses are those of the member's files. `z_score` is the member's own; `score`,

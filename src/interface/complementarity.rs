@@ -140,7 +140,7 @@ mod tests {
             .collect()
     }
 
-    /// Flat sheets a gap apart match by exp(-gap^2 / 2) everywhere, but for what is left of their balls.
+    /// Flat sheets a gap apart match by exp(-gap^2 / 2) everywhere, but for the remainders of their balls.
     #[test]
     fn flat_sheets_match_by_their_gap() {
         for gap in [0.0, 0.5, 1.0] {

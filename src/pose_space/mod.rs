@@ -138,7 +138,7 @@ impl PoseSpace {
         }
     }
 
-    /// Whether the grid's poses are in the space as they are. Rings lie between its points.
+    /// Whether the grid's poses are in the space as they are. Rings are between its points.
     pub fn is_on_grid(&self) -> bool {
         matches!(self, Self::Free)
     }

@@ -161,7 +161,7 @@ mod tests {
         }
     }
 
-    /// Where the axis must cross a ring's own, the filter keeps the voxels about which the pose also moves a point of
+    /// If the axis must cross a ring's own, the filter keeps the voxels about which the pose also moves a point of
     /// that axis both ways aside. They form a line, which holds the half turns at all heights.
     #[test]
     fn of_two_rings_voxels_along_their_axis_stay() {

@@ -48,7 +48,7 @@ pub(crate) struct PoseScorer<'a> {
 pub struct RankedPose {
     /// From the ligand's file frame to the receptor's.
     pub pose: Pose,
-    /// The score that orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
+    /// The score that orders the rows: `cluster_score` if rows are clusters, else `pose_score`.
     pub score: f64,
     /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
     pub search_score: f64,

@@ -33,7 +33,7 @@ pub struct Rescoring<'a> {
 impl<'a> Rescoring<'a> {
     /// The inputs that two labelled bodies and the priors provide, with the weights of the options.
     ///
-    /// Active residues carry a weight of their own, which depends on the prior that names them.
+    /// Active residues have their own weight, which depends on the prior that names them.
     pub fn new(
         bodies: [&'a Knots; 2],
         (active, restrained): (&'a ActiveResidues, &'a Restrained),

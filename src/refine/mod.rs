@@ -2,7 +2,7 @@
 //!
 //! For each pose three stages follow one another. Each is kept only if it lowers the energy of the sharp fit
 //! ([`knotdock_scoring::sharp`]), so that no pose ends above where it began. None takes the ligand farther from the pose
-//! than [`RefineOptions::max_move`]: unbound molecules clash where they belong, and what is lowest is then elsewhere.
+//! than [`RefineOptions::max_move`]: unbound molecules clash in their place, and the lowest energy is then elsewhere.
 //!
 //! 1. The rigid optimum near the pose: that of [`SharpFit::best_near`] or, if it is too far, of [`SharpFit::descend`].
 //! 2. The side chains of the interface, packed for that place by their own energies ([`crate::side_chains`]).

@@ -26,7 +26,7 @@ pub struct FineSearched {
 }
 
 /// Searches the finer rotations about the best of `coarse`, peaks best first. Returned are the best peaks of both,
-/// best first, and what was searched.
+/// best first, and the coverage.
 pub(crate) fn search_finer(
     plan: &SearchPlan,
     engine: &ScanEngine,

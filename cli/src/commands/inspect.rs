@@ -6,7 +6,7 @@ use crate::records::joined;
 use crate::tables::atom_table;
 use crate::tables::report::counted;
 use clap::{ArgGroup, Args};
-use knotdock::output::files::molecule_file;
+use knotdock::output::files::complexes::{format_of_name, write_kept_atoms};
 use knotdock::priors::{Findings, PRIORS};
 use knotdock::rank::rescoring::term_counts;
 use knotdock_scoring::terms::pose::TermDefinition;
@@ -86,7 +86,7 @@ impl Inspect {
             console.say(format!("{} atoms in {}", fates.len(), path.display()));
         }
         if let (Some(path), Some(format)) = (&self.write, format) {
-            molecule_file::write(path, format, molecule)?;
+            write_kept_atoms(path, format, molecule)?;
             console.say(format!(
                 "{} kept, in {}",
                 counted(molecule.atoms.len(), "atom"),
@@ -195,7 +195,7 @@ fn counts_text(counts: &[(&TermDefinition, usize)]) -> String {
 
 /// The format of the file to write.
 fn written_format(file: &Path) -> Result<Format, Error> {
-    molecule_file::format_of_name(file).ok_or_else(|| {
+    format_of_name(file).ok_or_else(|| {
         Error::input("the name of the structure to write ends neither in .pdb nor in .cif")
             .at(file)
             .help("end the name in .pdb or .cif")

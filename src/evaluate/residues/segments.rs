@@ -224,7 +224,7 @@ mod tests {
         segments.map(|segment| segment.members.len()).collect()
     }
 
-    /// A chain of so many alanines from the given number on, `x` Å to the side.
+    /// A chain of `count` alanines from the given number on, `x` Å to the side.
     fn beside(first: i64, count: usize, x: f64) -> Vec<Atom> {
         let atoms = chain_of("A", &"A".repeat(count), &numbers(first, count));
         let aside = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);

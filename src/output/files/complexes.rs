@@ -1,4 +1,4 @@
-//! Complexes: the receptor as it was and the ligand in its place, one file a rank; of rings all copies.
+//! Complexes: the receptor as it was and the ligand in its place, one file per rank; for rings, all copies.
 
 use crate::output::files::file_error;
 use knotdock_structures::Error;
@@ -6,10 +6,12 @@ use std::io;
 use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::molecule::{ChainMap, Format, Molecule, complex_format, write_complex};
+use knotdock_structures::molecule::{
+    ChainMap, Format, Molecule, complex_format, write_complex, write_renamed,
+};
 
 use crate::output::files::disk;
-use crate::output::files::whole_file::write_new;
+use crate::output::files::whole_file::{write_new, write_whole};
 use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
@@ -155,4 +157,25 @@ fn remarks(row: &PoseRow, arrangement: Arrangement, note: &str) -> Vec<String> {
         format!("{moved} turned by (w x y z) {w:.6} {x:.6} {y:.6} {z:.6}"),
         format!("then moved by {:.3} {:.3} {:.3} A", t.x, t.y, t.z),
     ]
+}
+
+/// The format of a file's name: `.pdb` or `.ent`, `.cif` or `.mmcif`; `None` for other endings.
+pub fn format_of_name(path: &Path) -> Option<Format> {
+    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    match ending.as_str() {
+        "pdb" | "ent" => Some(Format::Pdb),
+        "cif" | "mmcif" => Some(Format::Mmcif),
+        _ => None,
+    }
+}
+
+/// Writes the atoms that were kept, whole or not at all. Chains keep their names if the format can hold them.
+pub fn write_kept_atoms(path: &Path, format: Format, molecule: &Molecule) -> Result<(), Error> {
+    let remark = format!(
+        "knotdock {VERSION}, what was read of {}",
+        molecule.report.file
+    );
+    write_whole(path, |mut file| {
+        write_renamed(&mut file, format, molecule, &[remark])
+    })
 }

@@ -1,4 +1,4 @@
-//! Many complexes in one file, `ensemble.pdb` or `ensemble.cif`: one model a rank, for viewers that play them.
+//! Many complexes in one file, `ensemble.pdb` or `ensemble.cif`: one model per rank, for viewers that play them.
 
 use crate::output::files::file_error;
 use knotdock_structures::Error;

@@ -18,7 +18,7 @@ pub const RUN: &str = "run.json";
 pub const ENSEMBLE: &str = "ensemble.json";
 /// The record of `knotdock tradeoff`.
 pub const TRADEOFF: &str = "tradeoff.json";
-/// The list of what was added to a run, with checksums as `files`.
+/// The list of a run's additions, with checksums as `files`.
 pub const ADDED: &str = "added.json";
 
 /// Folder of an ensemble that holds its runs.

@@ -8,7 +8,7 @@ use std::path::Path;
 
 use super::checksum::sha256;
 
-/// Name of a report in the directory of what it is of.
+/// Name of the report in the directory of a run.
 pub const REPORT: &str = "report.html";
 /// Beginning of a report.
 pub const BEGINNING: &str = "<!DOCTYPE html>\n<!-- A report of knotdock";

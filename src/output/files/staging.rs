@@ -388,7 +388,7 @@ mod tests {
         );
     }
 
-    /// A run takes the place of nothing but a run, on request, and of no file of the user's in it.
+    /// A run replaces only a run, on request, and no user's file in it.
     #[test]
     fn what_is_not_a_runs_own_is_refused() {
         let root = tempfile::tempdir().unwrap();

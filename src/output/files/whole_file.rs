@@ -89,11 +89,11 @@ pub fn leftovers(place: &Path) -> Vec<PathBuf> {
     entries.map(|(path, _)| path).filter(is_ours).collect()
 }
 
-/// A file that is written and not yet in its place. Dropped, it goes, and what is in its place stays.
+/// A file that is written and not yet in its place. Dropped, it goes, and the file in its place stays.
 #[derive(Debug)]
 pub struct StagedFile {
     place: PathBuf,
-    /// Whether a file was there when this one was begun. One that comes in the meantime is not replaced.
+    /// Whether a file was there at the start. One that comes in the meantime is not replaced.
     replaces: bool,
     /// Its present path; `None` for a stream, which is written to in place.
     file: Option<TempPath>,

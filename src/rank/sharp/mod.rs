@@ -6,13 +6,11 @@
 //! ([`evidence`]). If none does, the sharp energies are noise, and the ranking stays the same.
 
 pub mod evidence;
-mod settle;
 mod stage;
 
 pub use evidence::{Evidence, SharpFinding};
 
-pub(crate) use settle::settle;
-pub(crate) use stage::{SharpInputs, optima};
+pub(crate) use stage::{SharpInputs, optima, settle};
 
 /// The sharp fit of one pose.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(one, [(Vector3::new(1.0, 2.0, 3.0), 0.0)]);
     }
 
-    /// A pair of atoms has one ball: the bound, and what the samples leave open at the ligand's atom.
+    /// A pair of atoms has one ball: the bound, and the allowance for the steps between samples at the ligand's atom.
     #[test]
     fn a_pair_has_the_ball_of_its_bound() {
         let one = |x: [f64; 3]| Knots::new(vec![x], vec![1.7]).unwrap();
