@@ -177,7 +177,6 @@ pub(crate) mod tests {
         let site = |role: SiteRole| Site {
             role,
             residues: vec![vec![1], vec![2]],
-            weight: 1.0,
             reason: "an antibody".to_owned(),
             record: serde_json::Value::Null,
         };

@@ -24,9 +24,10 @@ const RECEPTOR: &str = "bfbfbf";
 /// A complex to look at.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ViewedComplex {
-    rank: usize,
+    /// Its rank.
+    pub rank: usize,
     /// Name of its file in `top/`.
-    file: String,
+    pub file: String,
     /// Names of the chains of the receptor, and of all that was placed.
     chains: [Vec<String>; 2],
 }

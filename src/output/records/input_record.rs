@@ -146,7 +146,6 @@ impl NativeRecord {
 mod tests {
     use super::*;
     use std::fs;
-    use std::fs;
 
     #[test]
     fn a_changed_input_is_noticed() {

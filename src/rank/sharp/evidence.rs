@@ -145,9 +145,9 @@ mod tests {
     /// Copies of one place have no spread, and few places no background.
     #[test]
     fn few_or_equal_places_prove_nothing() {
-        assert_eq!(Evidence::of(&[-50.0; FEWEST], MANY), None);
+        assert_eq!(Evidence::of(&[-50.0; MIN_OTHERS], MANY), None);
         assert_eq!(Evidence::of(&[], MANY), None);
-        assert!(!with(&[-51.0], [-50.0; FEWEST].into_iter()).stands_out());
+        assert!(!with(&[-51.0], [-50.0; MIN_OTHERS].into_iter()).stands_out());
         assert!(with(&[-50.0], [-50.0; 39].into_iter()).margin().is_finite());
     }
 

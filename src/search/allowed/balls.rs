@@ -130,7 +130,7 @@ mod tests {
         };
         let none = Vector3::zeros();
         let balls = of_restraint(&restraint, [&receptor, &ligand], [none, none], (1.0, 0.1));
-        assert!(!balls.is_empty() && balls.len() <= MOST);
+        assert!(!balls.is_empty() && balls.len() <= MAX_BALLS);
         // 2 Å times 64^(1/6) = 2, and half of a voxel's diagonal.
         assert!(balls.iter().all(|ball| ball.radius >= 5.0));
     }
