@@ -1,7 +1,7 @@
 //! Small files whole: options, records, tables and potentials, each within a bound on its size.
 //!
-//! What a name stands for may have no end (`/dev/zero`) or be far larger than any such file. Nothing beyond the bound
-//! is read. Structures and meshes have bounds of their own, where they are read.
+//! A name may be that of an endless device (`/dev/zero`) or of a file far larger than any of these. Nothing beyond the
+//! bound is read. The readers of structures and meshes have bounds too.
 
 use std::fs::{self, File};
 use std::io::{self, ErrorKind, Read};
@@ -21,7 +21,7 @@ pub const MAX_PAIRS: u64 = 256 << 20;
 /// Most bytes of a file of distance restraints.
 pub const MAX_RESTRAINTS: u64 = 16 << 20;
 
-/// Most bytes of a `run.json`, which lists what was left out of the inputs.
+/// Most bytes of a `run.json`, which lists the residues left out of the inputs.
 pub const MAX_RECORD: u64 = 256 << 20;
 
 /// Most bytes of a table of poses: ten million rows, the most that a run keeps.
@@ -37,20 +37,15 @@ const MAX_PIPED: u64 = 256 << 20;
 pub fn read_bounded(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let file = File::open(path)?;
     let metadata = file.metadata()?;
-    if !metadata.is_file() {
-        return bounded(file, limit.min(MAX_PIPED));
+    match metadata.is_file() {
+        true if metadata.len() > limit => Err(too_large(limit)),
+        true => bounded(file, limit),
+        false => bounded(file, limit.min(MAX_PIPED)),
     }
-    if metadata.len() > limit {
-        return Err(too_large(limit));
-    }
-    bounded(file, limit)
 }
 
-/// As [`read_bounded`], of what lies in a folder where the program expects a file: a pipe or a device there is not
-/// opened, for the opening of a pipe waits for whoever writes to it.
-///
-/// # Errors
-/// As [`read_bounded`], and [`ErrorKind::InvalidInput`] for what is no file.
+/// As [`read_bounded`], for a name that the program expects in a folder: a pipe or a device is an
+/// [`ErrorKind::InvalidInput`] and not opened, since the opening of a pipe waits for whoever writes to it.
 pub fn read_bounded_file(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     let kind = fs::metadata(path)?.file_type();
     if kind.is_dir() {
@@ -65,10 +60,7 @@ pub fn read_bounded_file(path: &Path, limit: u64) -> io::Result<Vec<u8>> {
     read_bounded(path, limit)
 }
 
-/// As [`read_bounded`], of a text in UTF-8.
-///
-/// # Errors
-/// As [`read_bounded`], and [`ErrorKind::InvalidData`] for what is no UTF-8.
+/// As [`read_bounded`], of a text in UTF-8; any other is an [`ErrorKind::InvalidData`].
 pub fn read_bounded_text(path: &Path, limit: u64) -> io::Result<String> {
     String::from_utf8(read_bounded(path, limit)?)
         .map_err(|_| io::Error::new(ErrorKind::InvalidData, "it is not text in UTF-8"))
@@ -85,13 +77,9 @@ fn bounded(source: impl Read, limit: u64) -> io::Result<Vec<u8>> {
 }
 
 fn too_large(limit: u64) -> io::Error {
-    io::Error::new(
-        ErrorKind::FileTooLarge,
-        format!(
-            "it has more than {}, the most that are read of it",
-            in_words(limit)
-        ),
-    )
+    let most = in_words(limit);
+    let message = format!("it has more than {most}, the most that are read of it");
+    io::Error::new(ErrorKind::FileTooLarge, message)
 }
 
 #[cfg(test)]

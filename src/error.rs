@@ -1,4 +1,4 @@
-//! Errors of the libraries below, as [`Error`] with what a user can do.
+//! Errors of the libraries below, as [`Error`] with a remedy.
 
 use crate::progress::Ended;
 use knotdock_scoring::engine::PlanError;

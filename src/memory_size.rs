@@ -1,12 +1,12 @@
-//! Sizes of memory as they are named to the user.
+//! Sizes of memory in messages.
 
-/// Steps in which a size is named, and twice what is left for the process's own size to vary, in bytes.
+/// Steps of the sizes in messages, and twice the allowance for the process's own size, in bytes.
 const NAMED_STEP: u64 = 1_000_000;
 
-/// One part in so many of what is needed is left for reading by several threads to vary.
+/// The inverse share of the needed memory that is the allowance for several reading threads.
 const VARIES: u64 = 50;
 
-/// A limit to name for what is needed: whole megabytes, with room for what the process itself takes to vary.
+/// A limit for a message about needed memory: whole megabytes, with the allowances.
 pub fn named(needed: u64) -> u64 {
     needed
         .saturating_add(NAMED_STEP / 2 + needed / VARIES)
@@ -22,7 +22,7 @@ pub fn as_size(bytes: u64) -> String {
     }
 }
 
-/// A size in the unit that people use for it, to four digits: `87 MB`, or `512 MiB` where it is so many.
+/// A size in the unit that people use for it, to four digits: `87 MB`, or `512 MiB` for whole MiB.
 pub fn in_words(bytes: u64) -> String {
     let is_binary = !bytes.is_multiple_of(NAMED_STEP) && bytes.is_multiple_of(1 << 20);
     let (step, units): (f64, [&str; 5]) = if is_binary {

@@ -12,31 +12,28 @@ pub const SURFACE_POINTS: usize = 960;
 /// Areas and volumes of a placed pair, by the atoms' balls.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct PoseGeometry {
-    /// Accessible area in Å^2 (probe of 1.4 Å) that the two take from each other, both sides together.
+    /// Accessible area in Å^2 (probe of 1.4 Å) that the two bury, both sides together.
     pub buried_area: f64,
-    /// Of it the receptor's.
+    /// The receptor's part of it.
     pub buried_area_receptor: f64,
-    /// Of it the ligand's.
+    /// The ligand's part of it.
     pub buried_area_ligand: f64,
     /// Volume of the union of the receptor's balls, in Å^3.
     pub volume_receptor: f64,
-    /// Of the ligand's.
+    /// Volume of the union of the ligand's balls, in Å^3.
     pub volume_ligand: f64,
-    /// Volume that lies in both, in Å^3.
+    /// Volume in both, in Å^3.
     pub volume_shared: f64,
     /// Bound of the error of each volume, in Å^3.
     pub volume_error: f64,
     /// Tanimoto similarity of the two solids: shared volume over that of both together.
     pub shape_tanimoto: f64,
-    /// Share of the smaller solid that lies outside the other.
+    /// Share of the smaller solid outside the other.
     pub protrusion: f64,
 }
 
 impl PoseGeometry {
     /// Measures a pose.
-    ///
-    /// # Errors
-    /// [`KnotsError`] when a molecule has no usable atom.
     pub fn of(receptor: &Molecule, ligand: &Molecule, pose: &Pose) -> Result<Self, KnotsError> {
         let placed = ligand.map_positions(|x| pose.apply(x));
         let [receptor_area, ligand_area] = receptor.buried_areas(&placed, SURFACE_POINTS);

@@ -1,6 +1,6 @@
 //! Interface predictions: the probability of each residue of a molecule to be in the interface.
 //!
-//! They are read from a table, or from the B values of the molecule's own file, where predictors leave them. Residues
+//! They are read from a table, or from the B values of the molecule's own file, as some predictors write them. Residues
 //! without a prediction count as average.
 //!
 //! ```text
@@ -41,7 +41,7 @@ const COLUMNS: Columns<3> = Columns {
     remedy: "the first row names the columns, all of which are needed: chain, residue, probability",
 };
 
-/// Where predictions are read.
+/// Source of predictions.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum PredictionSource {
     /// The B values of the molecule.
@@ -108,9 +108,8 @@ fn of_b_values(molecule: &Molecule) -> Result<Vec<Prediction>, Error> {
     let (mut predictions, mut outside): (Vec<Prediction>, Vec<String>) = Default::default();
     let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
     let chains = molecule.peptide_chains();
-    let residues = chains
-        .iter()
-        .flat_map(|chain| chain.residues.iter().map(|residue| (chain.name, residue)));
+    let chains = chains.iter();
+    let residues = chains.flat_map(|chain| chain.residues.iter().map(|one| (chain.name, one)));
     for (chain, residue) in residues {
         let is_heavy = |at: &usize| !atoms[*at].is_hydrogen();
         let heavy: Vec<usize> = residue.atoms.clone().filter(is_heavy).collect();
@@ -145,9 +144,8 @@ fn of_b_values(molecule: &Molecule) -> Result<Vec<Prediction>, Error> {
         ));
     }
     if predictions.is_empty() {
-        return refused(
-            "there is no amino acid, and only those have predictions as B values".to_owned(),
-        );
+        let message = "there is no amino acid, and only those have predictions as B values";
+        return refused(message.to_owned());
     }
     Ok(predictions)
 }
@@ -162,10 +160,8 @@ fn of_table(text: &str, molecule: &Molecule) -> Result<Vec<Prediction>, Error> {
     read_rows(text.into_bytes(), &COLUMNS, |line, row| {
         let (residue, atoms) = residue(row, molecule)?;
         if let Some(first) = lines.insert(atoms.first().copied(), line) {
-            return Err(Error::input(format!(
-                "residue {residue} has a prediction on line {first} already"
-            ))
-            .help("leave out one of the two rows"));
+            let message = format!("residue {residue} has a prediction on line {first} already");
+            return Err(Error::input(message).help("leave out one of the two rows"));
         }
         predictions.push((atoms, probability(row[2])?));
         Ok(())
@@ -192,10 +188,8 @@ fn residue(
     let selection: ResidueSelection = name.parse().map_err(|_| no_residue())?;
     let mut selected = molecule.selected(&selection).map_err(|unknown| {
         let (residue, present) = (shortened(&unknown.part), unknown.present());
-        Error::input(format!(
-            "there is no residue {residue}; there are {present}"
-        ))
-        .help(
+        let message = format!("there is no residue {residue}; there are {present}");
+        Error::input(message).help(
             "leave out rows of residues that the file of the molecule lacks, and number as it does",
         )
     })?;
@@ -213,7 +207,7 @@ fn residue(
     }
 }
 
-/// Whether several residues are called alike.
+/// Whether these are several residues with one number.
 fn has_one_number(residues: &[Vec<usize>], molecule: &Molecule) -> bool {
     let number = |atoms: &Vec<usize>| {
         let atom = atoms.first().and_then(|&at| molecule.atoms.get(at))?;
@@ -258,7 +252,7 @@ impl std::fmt::Display for PredictionSource {
     }
 }
 
-/// Log-odds of probabilities less those of their mean; `None` where all are equal.
+/// Log-odds of probabilities less those of their mean; `None` if all are equal.
 fn log_odds(predictions: &[Prediction]) -> Option<Vec<PredictedResidue>> {
     let logit = |p: f64| {
         let p = p.clamp(1.0 - MAX_PROBABILITY, MAX_PROBABILITY);
@@ -456,7 +450,7 @@ mod tests {
     }
 
     proptest! {
-        /// Any text is read or refused, and what is read can be used.
+        /// Any text is read or refused, and all predictions that are read can be used.
         #[test]
         fn any_text_is_read_or_refused(
             words in prop::collection::vec(prop::sample::select(vec![

@@ -3,25 +3,25 @@
 /// Receives how far a run has come.
 pub trait Progress: Sync {
     /// A stage of `total` steps begins.
-    fn stage(&self, name: &str, total: u64);
-    /// So many steps more are done.
-    fn advance(&self, by: u64);
-    /// Fails where the run is to end before its end: asked between its stages and rotations.
+    fn stage(&self, _name: &str, _total: u64) {}
+    /// Reports that further steps are done.
+    fn advance(&self, _by: u64) {}
+    /// Called between stages and rotations: an error ends the run.
     ///
     /// # Errors
-    /// Why it is to end.
+    /// The reason for the end.
     fn go_on(&self) -> Result<(), Ended> {
         Ok(())
     }
 }
 
-/// Why a run ended before its end.
+/// The reason why a run ended early.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
 pub enum Ended {
     /// Its user stopped it.
     #[error("the run was interrupted")]
     Interrupted,
-    /// It took longer than it was allowed: so many seconds.
+    /// It took longer than its limit in seconds.
     #[error("the run took longer than its limit of {0} s")]
     TimeLimit(f64),
 }
@@ -30,8 +30,4 @@ pub enum Ended {
 #[derive(Clone, Copy, Debug, Default)]
 pub struct NoProgress;
 
-impl Progress for NoProgress {
-    fn stage(&self, _: &str, _: u64) {}
-
-    fn advance(&self, _: u64) {}
-}
+impl Progress for NoProgress {}

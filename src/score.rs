@@ -5,8 +5,7 @@ use crate::dock::scene::Scene;
 use crate::error::{COARSER, no_pose};
 use crate::memory_size::in_words;
 use knotdock_scoring::Precision;
-use knotdock_scoring::engine::ReceptorSpectra;
-use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan};
+use knotdock_scoring::engine::{CpuEngine, EngineOptions, Plan, ReceptorSpectra};
 use knotdock_scoring::exact::ExactScorer;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::quantity::Quantity;
@@ -46,11 +45,10 @@ pub struct ScoreOptions {
     pub memory: Option<u64>,
 }
 
-/// Bytes that a mode takes, conjugates counted once, besides those of each function: as measured, less than a tenth
-/// from it.
-const BYTES_A_MODE: u64 = 1040;
+/// Bytes of a mode, conjugates counted once, besides those of each function: within a tenth of the measured value.
+const BYTES_PER_MODE: u64 = 1040;
 /// Bytes that a mode takes for each function of the ligand.
-const BYTES_A_FUNCTION: u64 = 71;
+const BYTES_PER_FUNCTION: u64 = 71;
 
 /// One row of the ladder.
 #[derive(Clone, Copy, Debug, Serialize)]
@@ -63,7 +61,7 @@ pub struct Rung {
     pub value: f64,
     /// |value - exact|.
     pub error: f64,
-    /// What the modes left out add at this rotation, in the root mean square over all translations.
+    /// Root mean square over all translations of the score of the modes left out, at this rotation.
     pub rms: f64,
     /// Seconds of a new translation with its gradient, the rotation prepared.
     pub seconds: f64,
@@ -81,9 +79,9 @@ pub struct OffsetSensitivity {
     pub score: f64,
     /// Of the slices at 0, r0, 2 r0.
     pub slices: [f64; 3],
-    /// The same by finite differences of the exact sum.
+    /// Derivative of the score by finite differences of the exact sum.
     pub exact_score: f64,
-    /// Likewise.
+    /// Derivatives of the slices by finite differences.
     pub exact_slices: [f64; 3],
 }
 
@@ -103,8 +101,8 @@ pub struct PoseScore {
     pub exact: f64,
     /// Its weighted terms by the effect's name.
     pub terms: BTreeMap<&'static str, f64>,
-    /// The largest score over all translations of the grid at this rotation, from all modes; where nothing scores
-    /// above zero, the largest magnitude instead.
+    /// The largest score over all translations of the grid at this rotation, from all modes; if nothing scores above
+    /// zero, the largest magnitude instead.
     pub scale: f64,
     /// The ladder, by rising number of modes.
     pub rows: Vec<Rung>,
@@ -120,7 +118,7 @@ pub struct PoseScore {
     pub gradient: Gradient,
     /// The same from all modes.
     pub gradient_modes: Gradient,
-    /// Sensitivity to the offset; `None` of the product kernel, which has no lifted axis to take it along.
+    /// Sensitivity to the offset; `None` for the product kernel, which has no lifted axis.
     pub offset_sensitivity: Option<OffsetSensitivity>,
 }
 
@@ -160,33 +158,23 @@ pub fn score(scene: &Scene, pose: &Pose, options: &ScoreOptions) -> Result<PoseS
         force: gradient.force.into(),
         torque: gradient.torque.into(),
     };
-    let offset_sensitivity = match scene.skin {
-        Some(_) => None,
-        None => {
-            let (exact_score, exact_slices) = exact_sensitivity(&plan, receptor, ligand, pose)?;
-            let weights = plan.options().kernel.slice_weights();
-            let weighted = slices.iter().zip(weights);
-            Some(OffsetSensitivity {
-                score: weighted.map(|(s, weight)| s * weight).sum(),
-                slices,
-                exact_score,
-                exact_slices,
-            })
-        }
-    };
+    let mut offset_sensitivity = None;
+    if scene.skin.is_none() {
+        let (exact_score, exact_slices) = exact_sensitivity(&plan, receptor, ligand, pose)?;
+        let weighted = slices.iter().zip(plan.options().kernel.slice_weights());
+        offset_sensitivity = Some(OffsetSensitivity {
+            score: weighted.map(|(s, weight)| s * weight).sum(),
+            slices,
+            exact_score,
+            exact_slices,
+        });
+    }
+    let on = scene.decisions.iter().filter(|decision| decision.on);
+    let effects = on.map(|decision| decision.effect);
+    let terms = effects.map(|effect| (effect.name(), exact.terms[effect as usize]));
     Ok(PoseScore {
         exact: exact.score,
-        terms: scene
-            .decisions
-            .iter()
-            .filter(|decision| decision.on)
-            .map(|decision| {
-                (
-                    decision.effect.name(),
-                    exact.terms[decision.effect as usize],
-                )
-            })
-            .collect(),
+        terms: terms.collect(),
         scale,
         rows,
         reached,
@@ -205,21 +193,19 @@ fn correlations(
     receptor: &Knots,
     ligand: &Knots,
 ) -> Vec<(ReceptorSpectra, TruncatedCorrelation)> {
+    let all = Selection::all(plan.modes());
+    let correlated = |quantity: Quantity| {
+        let spectra = ReceptorSpectra::new(plan, receptor, ligand, quantity, Precision::Double);
+        let correlation = TruncatedCorrelation::new(plan, &spectra, ligand, &all);
+        (spectra, correlation)
+    };
     let quantities = [
         Quantity::Score,
         Quantity::SliceByOffset(0),
         Quantity::SliceByOffset(1),
         Quantity::SliceByOffset(2),
     ];
-    let all = Selection::all(plan.modes());
-    quantities
-        .into_par_iter()
-        .map(|quantity| {
-            let spectra = ReceptorSpectra::new(plan, receptor, ligand, quantity, Precision::Double);
-            let correlation = TruncatedCorrelation::new(plan, &spectra, ligand, &all);
-            (spectra, correlation)
-        })
-        .collect()
+    quantities.into_par_iter().map(correlated).collect()
 }
 
 /// The plan whose modes are accurate enough for a ladder.
@@ -233,21 +219,21 @@ fn plan(scene: &Scene, options: &ScoreOptions) -> Result<Arc<Plan>, Error> {
         ..options.engine
     };
     let plan = scene.plan_of(fine, kernel_tolerance)?;
-    let bytes_a_mode = BYTES_A_MODE + BYTES_A_FUNCTION * plan.functions() as u64;
-    let needed = bytes_a_mode * plan.modes().count as u64;
+    let bytes_per_mode = BYTES_PER_MODE + BYTES_PER_FUNCTION * plan.functions() as u64;
+    let count = plan.modes().count;
+    let needed = bytes_per_mode * count as u64;
     match options.memory.filter(|&allowed| needed > allowed) {
-        Some(allowed) => Err(Error::input(format!(
-            "{} modes need {} of memory, and {} are allowed",
-            plan.modes().count,
-            in_words(needed),
-            in_words(allowed)
-        ))
-        .help(COARSER)),
+        Some(allowed) => {
+            let [needed, allowed] = [needed, allowed].map(in_words);
+            let message =
+                format!("{count} modes need {needed} of memory, and {allowed} are allowed");
+            Err(Error::input(message).help(COARSER))
+        }
         None => Ok(Arc::new(plan)),
     }
 }
 
-/// What the rows of a ladder of modes are computed from.
+/// Inputs of a ladder of modes.
 struct Ladder<'a> {
     plan: &'a Plan,
     spectra: &'a ReceptorSpectra,
@@ -301,12 +287,12 @@ impl Ladder<'_> {
 
 /// Numbers of modes: doubling from `FIRST_MODES`, with the stated number, the requested one, and all.
 fn rungs(total: usize, requested: Option<usize>) -> Vec<usize> {
-    let mut rungs: Vec<usize> =
-        std::iter::successors(Some(FIRST_MODES), |modes| modes.checked_mul(2))
-            .take_while(|&modes| modes < total)
-            .chain([STATED_MODES, total])
-            .chain(requested)
-            .collect();
+    let doubled = std::iter::successors(Some(FIRST_MODES), |modes| modes.checked_mul(2));
+    let doubled = doubled.take_while(|&modes| modes < total);
+    let mut rungs: Vec<usize> = doubled
+        .chain([STATED_MODES, total])
+        .chain(requested)
+        .collect();
     rungs.sort_unstable();
     rungs.dedup();
     rungs
@@ -341,7 +327,7 @@ fn exact_sensitivity(
     let (more, less) = (grown(h)?, grown(-h)?);
     let slope = |a: f64, b: f64| (a - b) / (2.0 * h);
     let slices = [0, 1, 2].map(|i| slope(more.slices[i], less.slices[i]));
-    // Shape alone: no other term knows of radii.
+    // Shape alone: no other term depends on radii.
     Ok((slope(more.score, less.score), slices))
 }
 

@@ -1,10 +1,10 @@
-//! The threads that work is done on.
+//! The threads of a run.
 //!
 //! Rayon's global pool is never used: it starts on the first parallel iterator outside of a pool, takes its size from
 //! the environment (`RAYON_NUM_THREADS`), and panics where its threads cannot be started.
 
-/// Stack of a thread, in bytes: as much as the main thread commonly has, since files are read and written on it, too.
-/// It takes memory only as far as it is used.
+/// Stack of a thread, in bytes: that of most main threads, since files are read and written on it, too. Only the used part
+/// takes memory.
 const STACK: usize = 8 << 20;
 
 use knotdock_structures::Error;
@@ -25,14 +25,14 @@ pub fn or_all(count: Option<usize>) -> usize {
     count.unwrap_or_else(|| std::thread::available_parallelism().map_or(1, usize::from))
 }
 
-/// Does work on `count` threads: parallel iterators in it share these, and no others. They are those of the pool that
-/// the caller's thread belongs to, if that has so many, and else new ones, which end with the work.
+/// Does work on `count` threads: parallel iterators in it share these, and no others. They are those of the caller's pool if
+/// it has this number, and else new ones, which end with the work.
 ///
 /// # Errors
-/// [`Error`] when they cannot be started, before any of the work is done.
+/// [`Error`] if they cannot be started, before any of the work is done.
 pub fn on<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> Result<T, Error> {
     let count = count.max(1);
-    // Outside of every pool the second question would start the global one.
+    // Outside of every pool the second call would start the global one.
     if rayon::current_thread_index().is_some() && rayon::current_num_threads() == count {
         return Ok(work());
     }
@@ -48,7 +48,7 @@ pub fn on<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> Result<T, E
 /// is then done on it alone, and so is work on one thread.
 ///
 /// # Errors
-/// [`Error`] where the program has used the global pool before.
+/// [`Error`] if the program has used the global pool before.
 pub fn stay_on_main() -> Result<(), Error> {
     rayon::ThreadPoolBuilder::new()
         .num_threads(1)
@@ -71,7 +71,7 @@ mod tests {
             .collect()
     }
 
-    /// Work of as many threads as the caller's pool has is done there; other work has threads of its own.
+    /// Work of as many threads as the caller's pool has is done there; other work has new threads.
     #[test]
     fn work_is_done_on_as_many_threads_as_were_wanted() {
         let outer = on(3, || {

@@ -128,7 +128,8 @@ fn cores_leave_the_card_its_share_of_the_memory() {
         return;
     }
     let folder = place();
-    let words = "dock receptor.pdb ligand.pdb --rotations 60 --resolution 8 --engine gpu --quiet -o run";
+    let words =
+        "dock receptor.pdb ligand.pdb --rotations 60 --resolution 8 --engine gpu --quiet -o run";
     run(
         folder.path(),
         &format!("{words} --threads 1000 --memory 400M"),

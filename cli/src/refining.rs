@@ -108,13 +108,17 @@ impl<'a> Refining<'a> {
         };
         for (row, chains) in written {
             all.table.push(row);
-            all.chains = Some(chains);
+            all.chains = chains;
         }
         Ok(all)
     }
 
     /// Refines and writes a pose; its row and the complex's chains. Packed molecules are dropped to save memory.
-    fn one(&self, row: &PoseRow, list: &mut PairList) -> Result<(RefinedRow, ChainMap), Error> {
+    fn one(
+        &self,
+        row: &PoseRow,
+        list: &mut PairList,
+    ) -> Result<(RefinedRow, Option<ChainMap>), Error> {
         let mut refined = self.refiner.refine(&row.pose, list)?;
         let quality = self.known.map(|known| known.qualities(row, &refined));
         let quality = quality.transpose()?;

@@ -49,7 +49,7 @@ class DockOptions(TypedDict, total=False):
     """Weights of the balls of meshes: fitted or unit [default: fitted]. fitted: the summed bumps come closest
     to one inside and to zero outside. unit: one each."""
 
-    sampler: str | float | Sequence[object]
+    sampler: Literal["lattice", "bi"]
     """How a mesh becomes balls: lattice or bi [default: lattice]. lattice: balls of one radius. bi: the balls
     of Behandish and Ilieş' Algorithm 1, which count by volume."""
 

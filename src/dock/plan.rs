@@ -11,7 +11,7 @@ use crate::priors::flexible_regions::FlexibleRegions;
 use crate::priors::restrained::Restrained;
 use crate::rank::rescoring::Rescoring;
 use crate::rank::sharp::SharpInputs;
-use crate::search::allowed::Known;
+use crate::search::allowed::SearchRestraints;
 use crate::search::plan::SearchPlan;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::terms::effect::Effect;
@@ -118,7 +118,7 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Error
     let refined = refined(&space, &scene.decisions, options);
     let memory = MemoryPlan::new(&scene, &engine, options, (&space, refined))?;
     let limits = (memory.in_flight(), memory.graphics);
-    let known = Known {
+    let known = SearchRestraints {
         restraints: &scene.restraints.distances,
         membrane: scene.restraints.membrane.as_ref(),
         knots: [&scene.receptor, &scene.ligand],

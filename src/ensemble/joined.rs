@@ -1,8 +1,8 @@
 //! Clusters across the members of an ensemble.
 //!
 //! The rows of all members, best pose first, are clustered as a single run clusters its poses: by the RMSD of the
-//! first ligand, each row joining the first cluster whose best pose is near. A row of a member stands for a cluster of
-//! that member, and brings that cluster's score S. The score of the joined cluster is T ln sum exp(S / T), so that with
+//! first ligand, each row joining the first cluster whose best pose is near. A row of a member represents a cluster of
+//! that member, with the cluster's score S. The score of the joined cluster is T ln sum exp(S / T), so that with
 //! one temperature T it is the score that all the poses would have in one run. T is a tenth of the best score of any
 //! member, as in a single run (`rank/ranking.rs`).
 
@@ -16,13 +16,13 @@ use crate::rank::cluster::{RigidBody, greedy};
 pub struct MemberRow {
     /// From the frame of the first ligand to that of the first receptor.
     pub pose: Pose,
-    /// Score of the row in its member: of its cluster, or of the pose where the table lists every pose.
+    /// Score of the row in its member: of its cluster, or of the pose if the table lists every pose.
     pub score: f64,
     /// Score of the pose.
     pub pose_score: f64,
-    /// Of these, what the sharp fit adds.
+    /// The part of it that the sharp fit adds.
     pub sharp: f64,
-    /// Poses that it stands for.
+    /// Poses that it represents.
     pub size: usize,
 }
 
@@ -35,12 +35,12 @@ pub struct JoinedRow {
     pub cluster: usize,
     /// Poses of the cluster.
     pub size: usize,
-    /// What orders the rows.
+    /// The score that orders the rows.
     pub score: f64,
 }
 
 /// Clusters rows within `radius` (Å RMSD of `body`, the first ligand). The first pose of each cluster, ordered by the
-/// clusters' scores; or where `every_pose` is true all rows, ordered by the poses' scores. Ties stay in the order given.
+/// clusters' scores; or, if `every_pose`, all rows, ordered by the poses' scores. Ties stay in the order given.
 pub fn join(rows: &[MemberRow], body: &RigidBody, radius: f64, every_pose: bool) -> Vec<JoinedRow> {
     let mut order: Vec<usize> = (0..rows.len()).collect();
     order.sort_by(|&a, &b| rows[b].pose_score.total_cmp(&rows[a].pose_score));
@@ -57,10 +57,8 @@ pub fn join(rows: &[MemberRow], body: &RigidBody, radius: f64, every_pose: bool)
         scores[cluster].push(rows[row].score);
         sizes[cluster] += rows[row].size;
     }
-    let scores: Vec<f64> = scores
-        .iter()
-        .map(|all| soft_sum(all, temperature))
-        .collect();
+    let scores = scores.iter().map(|all| soft_sum(all, temperature));
+    let scores: Vec<f64> = scores.collect();
     let mut by_score: Vec<usize> = (0..count).collect();
     by_score.sort_by(|&a, &b| scores[b].total_cmp(&scores[a]));
     let mut places = vec![0; count];
@@ -92,9 +90,8 @@ pub fn join(rows: &[MemberRow], body: &RigidBody, radius: f64, every_pose: bool)
 /// T ln sum exp(s / T), about the largest score so that nothing overflows.
 fn soft_sum(scores: &[f64], temperature: f64) -> f64 {
     let largest = scores.iter().copied().fold(f64::NEG_INFINITY, f64::max);
-    let weights = scores
-        .iter()
-        .map(|score| ((score - largest) / temperature).exp());
+    let scaled = scores.iter().map(|score| (score - largest) / temperature);
+    let weights = scaled.map(f64::exp);
     largest + temperature * weights.sum::<f64>().ln()
 }
 

@@ -1,7 +1,7 @@
-//! One table of the poses of all members, in the columns of their own tables.
+//! One table of the poses of all members, in the columns of their tables.
 //!
-//! Beside these it has `receptor_model`, `ligand_model`, `member` and `member_rank`: which conformations, which run,
-//! and which row of its table. Poses are those of the member's files. `z_score` is the member's own; `score`,
+//! Beside these it has `receptor_model`, `ligand_model`, `member` and `member_rank`: the conformations, the run, and the
+//! row of its table. Poses are those of the member's files. `z_score` is the member's own; `score`,
 //! `cluster` and `cluster_size` are of the ensemble.
 
 use std::collections::HashSet;
@@ -18,11 +18,11 @@ use crate::output::tables::poses_reader::{column_place, no_value};
 use crate::rank::cluster::RigidBody;
 
 /// Columns that name the conformations, receptor first.
-pub const CONFORMATIONS: [&str; 2] = ["receptor_model", "ligand_model"];
+const CONFORMATIONS: [&str; 2] = ["receptor_model", "ligand_model"];
 /// Column of the member's name.
 pub const MEMBER: &str = "member";
 /// Column of the row's rank in the member's own table.
-pub const MEMBER_RANK: &str = "member_rank";
+const MEMBER_RANK: &str = "member_rank";
 
 /// A member that has been docked.
 #[derive(Clone, Debug)]
@@ -39,7 +39,7 @@ pub struct DockedMember {
     pub table: PoseTable,
 }
 
-/// The joint table, and what came of joining.
+/// The joint table, with its members and clusters.
 #[derive(Clone, Debug)]
 pub struct JointTable {
     /// The table.
@@ -53,20 +53,9 @@ pub struct JointTable {
 impl JointTable {
     /// Places of the first row of each cluster, in the order of the table.
     pub fn firsts(&self) -> Vec<usize> {
-        let cluster = self.table.header.iter().position(|name| name == "cluster");
         let mut seen = HashSet::new();
-        let records = self.table.records.iter().enumerate();
-        let is_first = |record: &StringRecord| {
-            seen.insert(
-                cluster
-                    .and_then(|place| record.get(place))
-                    .map(str::to_owned),
-            )
-        };
-        let mut is_first = is_first;
-        records
-            .filter(|(_, record)| is_first(record))
-            .map(|(place, _)| place)
+        let rows = 0..self.table.records.len();
+        rows.filter(|&row| seen.insert(self.table.field(row, "cluster")))
             .collect()
     }
 }
@@ -74,7 +63,7 @@ impl JointTable {
 /// Joins the members' tables; poses cluster within `radius` (Å RMSD) of `body`, the first ligand.
 ///
 /// # Errors
-/// [`Error`] if a member's table lacks a column or holds what is no number.
+/// [`Error`] if a member's table lacks a column or a number.
 pub fn joint(
     members: &[DockedMember],
     body: &RigidBody,
@@ -101,14 +90,10 @@ pub fn joint(
     for (row, rank) in joined.iter().zip(1..) {
         let (index, place) = places[row.row];
         let member = &members[index];
-        joint
-            .table
-            .records
-            .push(columns.record(member, (index, place), row, rank));
-        joint.table.rows.push(PoseRow {
-            rank,
-            pose: member.table.rows[place].pose,
-        });
+        let record = columns.record(member, (index, place), row, rank);
+        joint.table.records.push(record);
+        let pose = member.table.rows[place].pose;
+        joint.table.rows.push(PoseRow { rank, pose });
         joint.members.push(index);
     }
     Ok(joint)
@@ -118,11 +103,8 @@ pub fn joint(
 fn member_rows(member: &DockedMember) -> Result<Vec<MemberRow>, Error> {
     let table = &member.table;
     let column = |name: &str| column_place(&member.path, &table.header, name);
-    let (score, pose_score, size) = (
-        column("score")?,
-        column("pose_score")?,
-        column("cluster_size")?,
-    );
+    let (score, pose_score) = (column("score")?, column("pose_score")?);
+    let size = column("cluster_size")?;
     let sharp = column("sharp").ok();
     let [receptor, ligand] = &member.to_first;
     let back = ligand.inverse();
@@ -156,22 +138,18 @@ const OWN: [&str; 4] = ["rank", "score", "cluster", "cluster_size"];
 struct Columns {
     /// Those of the members' tables that are copied, in order.
     copied: Vec<String>,
-    /// Where each stands in each member's table.
+    /// The place of each in each member's table.
     places: Vec<Vec<Option<usize>>>,
 }
 
 impl Columns {
-    /// All columns that any member has, each behind the one that it follows there.
+    /// All columns that any member has, each after the one that it follows there.
     fn of(members: &[DockedMember]) -> Self {
         let mut copied: Vec<String> = Vec::new();
         for member in members {
             let mut after = 0;
-            for name in member
-                .table
-                .header
-                .iter()
-                .filter(|name| !OWN.contains(name))
-            {
+            let header = member.table.header.iter();
+            for name in header.filter(|name| !OWN.contains(name)) {
                 match copied.iter().position(|known| known == name) {
                     Some(place) => after = place + 1,
                     None => {
@@ -216,11 +194,8 @@ impl Columns {
         record.push_field(&member.table.rows[place].rank.to_string());
         let source = &member.table.records[place];
         for place in &self.places[index] {
-            record.push_field(
-                place
-                    .and_then(|place| source.get(place))
-                    .unwrap_or_default(),
-            );
+            let field = place.and_then(|place| source.get(place));
+            record.push_field(field.unwrap_or_default());
         }
         record
     }

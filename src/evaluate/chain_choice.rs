@@ -17,13 +17,12 @@ pub struct ChainChoice {
 impl ChainChoice {
     /// Whether a docked segment may be matched with one of the native's.
     pub(super) fn allows(&self, user: &Segment, native: &Segment) -> bool {
-        let mut own = self.map.iter().filter(|(one, _)| one == user.chain());
-        let first = own.next();
-        first.is_none_or(|first| {
-            std::iter::once(first)
-                .chain(own)
-                .any(|(_, to)| to == native.chain())
-        })
+        let mut own = self
+            .map
+            .iter()
+            .filter(|(one, _)| one == user.chain())
+            .peekable();
+        own.peek().is_none() || own.any(|(_, to)| to == native.chain())
     }
 
     /// Refuses chains that are not there.

@@ -1,4 +1,4 @@
-//! Another conformation of a molecule laid on the first: an NMR model, a snapshot, a crystal with a partner bound.
+//! Superposition of another conformation of a molecule on the first: an NMR model, a snapshot, a crystal with a partner bound.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
@@ -26,8 +26,8 @@ pub struct Superposed {
     pub matched: usize,
 }
 
-/// Lays a conformation on the first one by their backbones. Residues are matched by chain, number and sequence, as
-/// with a known complex; where equal chains can be matched in several ways that fit alike, names of chains decide.
+/// Superposes a conformation on the first one by their backbones. Residues are matched by chain, number and sequence, as
+/// with a known complex; names of chains decide if equal chains can be matched in several ways that fit alike.
 ///
 /// # Errors
 /// [`Error`] if a molecule has no residues to compare, less than half of the residues are the same, or the shapes differ
@@ -45,23 +45,18 @@ pub fn superpose(conformation: &Molecule, first: &Molecule) -> Result<Superposed
         )));
     }
     found.retain(|placement| placement.matched() as f64 >= 0.9 * most as f64);
-    let least = found.iter().map(|placement| placement.rmsd);
-    let least = least.fold(f64::INFINITY, f64::min);
+    let rmsds = found.iter().map(|placement| placement.rmsd);
+    let least = rmsds.fold(f64::INFINITY, f64::min);
     found.retain(|placement| placement.rmsd <= least + ALIKE);
-    let of_one_name = |placement: &Placement| -> usize {
-        let chains = placement.chains.iter();
-        let alike = chains
-            .filter(|pair| moved.segments[pair.user].name == fixed.segments[pair.native].name);
-        alike.map(|pair| pair.pairs.len()).sum()
-    };
+    let same_named = |placement: &Placement| placement.same_named(&moved, &fixed);
     found.sort_by(|a, b| {
-        let names = of_one_name(b).cmp(&of_one_name(a));
+        let names = same_named(b).cmp(&same_named(a));
         names.then(a.rmsd.total_cmp(&b.rmsd))
     });
     let best = found.swap_remove(0);
     if best.rmsd > MAX_FIT_RMSD {
         return Err(not_alike(format!(
-            "this does not fit on the first molecule of its side: the backbones lie {:.1} Å RMSD apart, and \
+            "this does not fit on the first molecule of its side: the backbones are {:.1} Å RMSD apart, and \
              {MAX_FIT_RMSD:.0} Å is the most",
             best.rmsd
         )));

@@ -30,19 +30,10 @@ pub(super) fn no_contact() -> Error {
 /// A pair of residues across the native's interface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct AcrossPair {
-    /// Index of the receptor's residue.
-    pub receptor: usize,
-    /// Index of the ligand's residue.
-    pub ligand: usize,
+    /// Indices of the receptor's and of the ligand's residue.
+    pub residues: [usize; 2],
     /// Whether they are in contact too.
     pub contact: bool,
-}
-
-impl AcrossPair {
-    /// Indices of the receptor's and of the ligand's residue.
-    pub fn residues(&self) -> [usize; 2] {
-        [self.receptor, self.ligand]
-    }
 }
 
 /// All pairs of residues nearer than 10 Å, ordered by receptor and then ligand residue.
@@ -59,8 +50,7 @@ pub(super) fn pairs_across(receptor: &[Residue], ligand: &[Residue]) -> Vec<Acro
             let least = least_distance_squared(&a.heavy, &b.heavy);
             if least < INTERFACE_DISTANCE * INTERFACE_DISTANCE {
                 found.push(AcrossPair {
-                    receptor: i,
-                    ligand: j,
+                    residues: [i, j],
                     contact: least < CONTACT_DISTANCE * CONTACT_DISTANCE,
                 });
             }
@@ -96,7 +86,7 @@ fn least_distance_squared(a: &[Point3<f64>], b: &[Point3<f64>]) -> f64 {
     least
 }
 
-/// A ball of atoms: the heavy atoms of one residue and where they lie.
+/// A ball around the heavy atoms of one residue.
 #[derive(Clone, Debug)]
 struct Ball {
     atoms: std::ops::Range<usize>,
@@ -134,46 +124,30 @@ pub(super) struct NativeContacts {
     receptor: ContactSide,
     ligand: ContactSide,
     /// Places of matched residues that touch in the native.
-    pairs: Vec<(usize, usize)>,
+    pub pairs: Vec<(usize, usize)>,
     /// Number of contacts of the whole native, matched or not.
-    total: usize,
+    pub total: usize,
 }
 
 impl NativeContacts {
-    /// The contacts among `across`, whose residues are the user's `receptor` and `ligand` residues where
-    /// `receptor_of` and `ligand_of` know them.
+    /// The contacts among `across`; `docked_of` has the index among the docked residues of each native residue that is
+    /// matched. Both sides are given receptor first.
     pub fn new(
         across: &[AcrossPair],
-        receptor: &[Residue],
-        ligand: &[Residue],
-        receptor_of: &HashMap<usize, usize>,
-        ligand_of: &HashMap<usize, usize>,
+        [receptor, ligand]: [&[Residue]; 2],
+        docked_of: &[HashMap<usize, usize>; 2],
     ) -> Self {
         let mut contacts = Self::default();
         for pair in across.iter().filter(|pair| pair.contact) {
             contacts.total += 1;
-            let (Some(&i), Some(&j)) =
-                (receptor_of.get(&pair.receptor), ligand_of.get(&pair.ligand))
-            else {
-                continue;
-            };
-            let places = (
-                contacts.receptor.place(i, &receptor[i]),
-                contacts.ligand.place(j, &ligand[j]),
-            );
-            contacts.pairs.push(places);
+            let [first, second] = pair.residues;
+            if let (Some(&i), Some(&j)) = (docked_of[0].get(&first), docked_of[1].get(&second)) {
+                let place = contacts.receptor.place(i, &receptor[i]);
+                let other = contacts.ligand.place(j, &ligand[j]);
+                contacts.pairs.push((place, other));
+            }
         }
         contacts
-    }
-
-    /// Number of contacts of the native.
-    pub fn total(&self) -> usize {
-        self.total
-    }
-
-    /// Number of those between matched residues.
-    pub fn matched(&self) -> usize {
-        self.pairs.len()
     }
 
     /// The largest share, 0 to 1, of the native's contacts that any pose can keep.
@@ -188,26 +162,16 @@ impl NativeContacts {
         }
         let moved = |point: &Point3<f64>| pose.rotation * point + pose.translation;
         let atoms: Vec<_> = self.ligand.atoms.iter().map(moved).collect();
-        let centers: Vec<_> = self
-            .ligand
-            .balls
-            .iter()
-            .map(|ball| moved(&ball.center))
-            .collect();
-        let kept = self
-            .pairs
-            .iter()
-            .filter(|&&(i, j)| {
-                let (fixed, moving) = (&self.receptor.balls[i], &self.ligand.balls[j]);
-                let reach = CONTACT_DISTANCE + fixed.radius + moving.radius;
-                nalgebra::distance_squared(&fixed.center, &centers[j]) < reach * reach
-                    && touches(
-                        &self.receptor.atoms[fixed.atoms.clone()],
-                        &atoms[moving.atoms.clone()],
-                    )
-            })
-            .count();
-        kept as f64 / self.total as f64
+        let balls = self.ligand.balls.iter();
+        let centers: Vec<_> = balls.map(|ball| moved(&ball.center)).collect();
+        let is_kept = |&&(i, j): &&(usize, usize)| {
+            let (fixed, moving) = (&self.receptor.balls[i], &self.ligand.balls[j]);
+            let reach = CONTACT_DISTANCE + fixed.radius + moving.radius;
+            let fixed_atoms = &self.receptor.atoms[fixed.atoms.clone()];
+            nalgebra::distance_squared(&fixed.center, &centers[j]) < reach * reach
+                && touches(fixed_atoms, &atoms[moving.atoms.clone()])
+        };
+        self.pairs.iter().filter(is_kept).count() as f64 / self.total as f64
     }
 }
 
@@ -239,7 +203,7 @@ mod tests {
         let found = pairs_across(&row(&[0.0]), &row(&[4.999, 5.0, 9.999, 10.0]));
         let seen: Vec<_> = found
             .iter()
-            .map(|pair| (pair.ligand, pair.contact))
+            .map(|pair| (pair.residues[1], pair.contact))
             .collect();
         assert_eq!(seen, [(0, true), (1, false), (2, false)]);
     }
@@ -252,7 +216,8 @@ mod tests {
         let one: HashMap<_, _> = [(0, 0)].into();
         let share = |of: &HashMap<_, _>, x: f64| {
             let pose = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
-            NativeContacts::new(&across, &receptor, &ligand, of, &all).share_kept(&pose)
+            let docked_of = [of.clone(), all.clone()];
+            NativeContacts::new(&across, [&receptor, &ligand], &docked_of).share_kept(&pose)
         };
         assert_eq!(share(&all, 0.0), 1.0);
         assert_eq!(share(&all, 1.9), 1.0);

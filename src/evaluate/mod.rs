@@ -60,7 +60,7 @@ pub use shared_chains::{SharedChains, shared_chains};
 
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use contacts::{AcrossPair, NativeContacts, pairs_across};
-use native::{Way, check_docked_share};
+use native::{Assignment, check_docked_share};
 use residues::Residues;
 use rmsd::{RmsdForms, Rmsds, Side, ligand_is_smaller};
 
@@ -72,9 +72,9 @@ const MIN_ATOMS: usize = 3;
 /// DockQ figures that differ by less are equal: rounding does not decide between assignments.
 const EQUAL_DOCKQ: f64 = 1e-9;
 
-/// Everything about one way of matching that evaluating a pose needs.
+/// One assignment of chains, prepared to evaluate poses.
 #[derive(Clone, Debug)]
-struct Arrangement {
+struct PreparedAssignment {
     rmsds: RmsdForms,
     contacts: NativeContacts,
     /// Whether both sides have the native's shape.
@@ -86,7 +86,7 @@ struct Arrangement {
 #[derive(Clone, Debug)]
 pub struct Evaluator {
     /// Never empty; of equal DockQ the first is taken.
-    arrangements: Vec<Arrangement>,
+    assignments: Vec<PreparedAssignment>,
 }
 
 impl Evaluator {
@@ -113,36 +113,36 @@ impl Evaluator {
             Residues::of(receptor, "receptor")?,
             Residues::of(ligand, "ligand")?,
         ];
-        let found = native::ways([&docked[0], &docked[1]], native, choice)?;
+        let found = native::assignments([&docked[0], &docked[1]], native, choice)?;
         let across: Vec<Vec<AcrossPair>> = found
             .groups
             .iter()
             .map(|[receptor, ligand]| pairs_across(&receptor.residues, &ligand.residues))
             .collect();
-        let mut arrangements: Vec<Arrangement> = Vec::new();
+        let mut assignments = Vec::new();
         let mut first_error = None;
-        for way in &found.ways {
-            let (groups, across) = (&found.groups[way.groups], &across[way.groups]);
-            match arrange([&docked[0], &docked[1]], way, groups, across) {
-                Ok(arrangement) => arrangements.push(arrangement),
+        for one in &found.list {
+            let (groups, across) = (&found.groups[one.groups], &across[one.groups]);
+            match prepare([&docked[0], &docked[1]], one, groups, across) {
+                Ok(prepared) => assignments.push(prepared),
                 Err(error) => first_error = first_error.or(Some(error)),
             }
         }
-        if arrangements.is_empty() {
+        if assignments.is_empty() {
             return Err(first_error.unwrap_or_else(|| native::unmatched("receptor")));
         }
-        let permutations = arrangements.len();
-        for Arrangement { report, .. } in &mut arrangements {
+        let permutations = assignments.len();
+        for PreparedAssignment { report, .. } in &mut assignments {
             report.permutations = permutations;
             report.complexes.clone_from(&found.complexes);
             report.unused_native_chains.clone_from(&found.unused);
         }
-        Ok(Self { arrangements })
+        Ok(Self { assignments })
     }
 
-    /// Report on the matching, of the first way.
+    /// Report on the first assignment.
     pub fn report(&self) -> &MatchReport {
-        &self.arrangements[0].report
+        &self.assignments[0].report
     }
 
     /// Judges one pose of the ligand.
@@ -150,38 +150,32 @@ impl Evaluator {
         self.best(pose).0
     }
 
-    /// Judges one pose of the ligand, with the report of the way in which it is matched.
+    /// Judges one pose of the ligand, with the report of its best assignment.
     pub fn best(&self, pose: &Pose) -> (PoseQuality, &MatchReport) {
-        let bounded = self.arrangements.iter().enumerate().map(|(place, one)| {
+        let bounded = self.assignments.iter().enumerate().map(|(place, one)| {
             let rmsds = one.rmsds.at(pose);
             let bound = dockq(one.contacts.most_kept(), rmsds.interface, rmsds.ligand);
             (bound, place, rmsds)
         });
         let mut bounded: Vec<_> = bounded.collect();
         bounded.sort_by(|a, b| b.0.total_cmp(&a.0));
-        let mut best: Option<(PoseQuality, usize)> = None;
-        for (bound, place, rmsds) in bounded {
-            if best.is_some_and(|(best, _)| bound < best.dockq - EQUAL_DOCKQ) {
+        let (_, mut best, rmsds) = bounded[0];
+        let mut quality = self.assignments[best].quality(pose, rmsds);
+        for &(bound, place, rmsds) in &bounded[1..] {
+            if bound < quality.dockq - EQUAL_DOCKQ {
                 break;
             }
-            let quality = self.arrangements[place].quality(pose, rmsds);
-            let is_better = best.is_none_or(|(known, known_place)| {
-                let gain = quality.dockq - known.dockq;
-                gain > EQUAL_DOCKQ || (gain >= -EQUAL_DOCKQ && place < known_place)
-            });
-            if is_better {
-                best = Some((quality, place));
+            let other = self.assignments[place].quality(pose, rmsds);
+            let gain = other.dockq - quality.dockq;
+            if gain > EQUAL_DOCKQ || (gain >= -EQUAL_DOCKQ && place < best) {
+                (quality, best) = (other, place);
             }
         }
-        let (quality, place) = best.unwrap_or_else(|| {
-            let first = &self.arrangements[0];
-            (first.quality(pose, first.rmsds.at(pose)), 0)
-        });
-        (quality, &self.arrangements[place].report)
+        (quality, &self.assignments[best].report)
     }
 }
 
-impl Arrangement {
+impl PreparedAssignment {
     fn quality(&self, pose: &Pose, rmsds: Rmsds) -> PoseQuality {
         let fnat = self.contacts.share_kept(pose);
         PoseQuality {
@@ -197,20 +191,18 @@ impl Arrangement {
     }
 }
 
-/// Prepares one way of matching; `across` are the groups' residue pairs.
-fn arrange(
+/// Prepares one assignment; `across` are the groups' residue pairs.
+fn prepare(
     docked: [&Residues; 2],
-    way: &Way,
+    assignment: &Assignment,
     groups: &[Residues; 2],
     across: &[AcrossPair],
-) -> Result<Arrangement, Error> {
+) -> Result<PreparedAssignment, Error> {
     if !across.iter().any(|pair| pair.contact) {
         return Err(contacts::no_contact());
     }
-    let pairs = way
-        .placements
-        .each_ref()
-        .map(|one| one.pairs().collect::<Vec<_>>());
+    let placements = assignment.placements.each_ref();
+    let pairs = placements.map(|one| one.pairs().collect::<Vec<_>>());
     let rmsds = RmsdForms::new(
         std::array::from_fn(|side| Side {
             user: docked[side],
@@ -219,34 +211,25 @@ fn arrange(
         }),
         across,
     );
-    let [of_receptor, of_ligand] = pairs.map(|pairs| -> HashMap<usize, usize> {
-        pairs
-            .into_iter()
-            .map(|(user, native)| (native, user))
-            .collect()
+    let docked_of = pairs.map(|pairs| -> HashMap<usize, usize> {
+        let pairs = pairs.into_iter();
+        pairs.map(|(user, native)| (native, user)).collect()
     });
-    let [receptor, ligand] = docked;
-    let contacts = NativeContacts::new(
-        across,
-        &receptor.residues,
-        &ligand.residues,
-        &of_receptor,
-        &of_ligand,
-    );
+    let contacts = NativeContacts::new(across, docked.map(|side| &side.residues[..]), &docked_of);
     let backbone_rmsd = rmsds.of_the_parts();
     let sides: [SideMatch; 2] = std::array::from_fn(|side| {
-        let near: HashSet<usize> = across.iter().map(|pair| pair.residues()[side]).collect();
-        let chains = &way.placements[side].chains;
+        let near: HashSet<usize> = across.iter().map(|pair| pair.residues[side]).collect();
+        let (user, native) = (docked[side], &groups[side]);
         SideMatch::new(
-            docked[side],
-            &groups[side],
-            chains,
+            user,
+            native,
+            &placements[side].chains,
             &near,
             backbone_rmsd[side],
         )
     });
     check_matched(&sides, &rmsds)?;
-    Ok(Arrangement {
+    Ok(PreparedAssignment {
         fits: backbone_rmsd.iter().all(|rmsd| *rmsd <= MAX_FIT_RMSD),
         report: match_report(sides, groups, &contacts),
         rmsds,
@@ -258,7 +241,8 @@ fn arrange(
 fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), Error> {
     let named = ["receptor", "ligand"].into_iter().zip(sides);
     for ((side, found), atoms) in named.zip(rmsds.atoms()) {
-        if found.interface_share() < MIN_INTERFACE_SHARE {
+        let interface = found.interface_residues.max(1) as f64;
+        if (found.interface_matched as f64 / interface) < MIN_INTERFACE_SHARE {
             return Err(Error::input(format!(
                 "only {} of the {} residues that the native's {side} has at the interface are matched in the {side} \
                  that was docked; at least half are needed",
@@ -278,7 +262,7 @@ fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), Error>
         }
         check_docked_share(side, found.matched, found.residues)?;
     }
-    // Each side may have half of the interface and yet no place of it be matched on both.
+    // Each side may have half of the interface, and yet no part of it be matched on both.
     let atoms = rmsds.interface_atoms();
     if atoms.contains(&0) || atoms.iter().sum::<usize>() < MIN_ATOMS {
         let [receptor, ligand] = atoms;
@@ -294,7 +278,7 @@ fn check_matched(sides: &[SideMatch; 2], rmsds: &RmsdForms) -> Result<(), Error>
     Ok(())
 }
 
-/// The report of one way of matching.
+/// The report of one assignment.
 fn match_report(
     [receptor, ligand]: [SideMatch; 2],
     groups: &[Residues; 2],
@@ -304,8 +288,8 @@ fn match_report(
     let interface = receptor.interface_residues + ligand.interface_residues;
     MatchReport {
         interface_share: kept as f64 / interface.max(1) as f64,
-        native_contacts: contacts.total(),
-        native_contacts_matched: contacts.matched(),
+        native_contacts: contacts.total,
+        native_contacts_matched: contacts.pairs.len(),
         dockq_ligand: if ligand_is_smaller(&groups[0], &groups[1]) {
             "ligand"
         } else {

@@ -34,42 +34,42 @@ const ENOUGH_RESIDUES: usize = 50;
 /// pass for each other.
 const MIN_IDENTITY_OF_BEST: f64 = 0.9;
 /// Most complexes that are listed.
-const MOST_LISTED: usize = 24;
+const MAX_LISTED: usize = 24;
 
 /// Part of a complex: segments, each with the residues of it that belong to the part.
 type Part = Vec<(usize, Vec<usize>)>;
 
 /// Receptor and ligand on the native's two sides; residues and segments of the native are those of the groups.
 #[derive(Clone, Debug)]
-pub(super) struct Way {
-    /// Index into [`Ways::groups`].
+pub(super) struct Assignment {
+    /// Index into [`Assignments::groups`].
     pub groups: usize,
     /// Placements of receptor and ligand.
     pub placements: [Placement; 2],
 }
 
-/// Every way to see the docked sides in the native, those of most equal chain names first.
+/// Every assignment of the docked sides to the native's, those of most equal chain names first.
 #[derive(Clone, Debug, Default)]
-pub(super) struct Ways {
+pub(super) struct Assignments {
     /// The native's two sides, receptor first.
     pub groups: Vec<[Residues; 2]>,
-    pub ways: Vec<Way>,
-    /// The complexes that the native holds, at most [`MOST_LISTED`], those that poses are measured by first.
+    pub list: Vec<Assignment>,
+    /// The complexes that the native holds, at most [`MAX_LISTED`], those that poses are measured by first.
     pub complexes: Vec<NativeComplex>,
-    /// Names of the native's chains that belong to no way.
+    /// Names of the native's chains that belong to no assignment.
     pub unused: Vec<String>,
 }
 
-/// The ways to see the docked sides in the native.
+/// The assignments of the docked sides to the native's.
 ///
 /// # Errors
 /// [`Error`] for residues that cannot be read, and for a choice of chains that are not there. Also if no chain is the
 /// receptor's or none the ligand's, and for a whole complex if it has one copy of both or they do not touch.
-pub(super) fn ways(
+pub(super) fn assignments(
     docked: [&Residues; 2],
     native: Native,
     choice: &ChainChoice,
-) -> Result<Ways, Error> {
+) -> Result<Assignments, Error> {
     match native {
         Native::Pair { receptor, ligand } => {
             let groups = [
@@ -86,12 +86,12 @@ fn of_pair(
     docked: [&Residues; 2],
     groups: [Residues; 2],
     choice: &ChainChoice,
-) -> Result<Ways, Error> {
+) -> Result<Assignments, Error> {
     let natives = [&groups[0], &groups[1]];
     choice.check(docked, &natives)?;
     let placements = all_placed(docked, natives, choice)?;
     let copies = copies(docked, natives, &placements);
-    // Chains that are not matched may touch all the same, and what is matched of the interface is judged by another.
+    // Chains without a match may touch all the same. Another check is for the matched share of the interface.
     let (measured, set_aside) = match combinations(copies, false, choice.named) {
         Ok(found) => (found.measured, found.set_aside),
         Err(_) => {
@@ -102,12 +102,12 @@ fn of_pair(
             (vec![first], Vec::new())
         }
     };
-    let ways = measured.iter().map(|one| Way {
+    let list = measured.iter().map(|one| Assignment {
         groups: 0,
         placements: one.of(&placements).map(Placement::clone),
     });
-    Ok(Ways {
-        ways: ways.collect(),
+    Ok(Assignments {
+        list: list.collect(),
         complexes: complexes(copies, measured.iter().chain(&set_aside)),
         groups: vec![groups],
         unused: Vec::new(),
@@ -118,14 +118,14 @@ fn of_complex(
     docked: [&Residues; 2],
     complex: &Residues,
     choice: &ChainChoice,
-) -> Result<Ways, Error> {
+) -> Result<Assignments, Error> {
     choice.check(docked, &[complex])?;
     let placements = all_placed(docked, [complex, complex], choice)?;
     let copies = copies(docked, [complex, complex], &placements);
     let all = combinations(copies, true, choice.named)?;
-    let mut found = Ways {
+    let mut found = Assignments {
         complexes: complexes(copies, all.measured.iter().chain(&all.set_aside)),
-        ..Ways::default()
+        ..Assignments::default()
     };
     let mut splits: Vec<[Part; 2]> = Vec::new();
     for one in all.measured {
@@ -134,14 +134,13 @@ fn of_complex(
         let groups = match splits.iter().position(|known| *known == split) {
             Some(groups) => groups,
             None => {
-                found
-                    .groups
-                    .push(split.each_ref().map(|part| complex.only(part)));
+                let groups = split.each_ref().map(|part| complex.only(part));
+                found.groups.push(groups);
                 splits.push(split.clone());
                 splits.len() - 1
             }
         };
-        found.ways.push(Way {
+        found.list.push(Assignment {
             groups,
             placements: std::array::from_fn(|side| in_group(sides[side], &split[side])),
         });
@@ -170,9 +169,10 @@ fn all_placed(
     natives: [&Residues; 2],
     choice: &ChainChoice,
 ) -> Result<[Vec<Placement>; 2], Error> {
+    let [receptor, ligand] = docked;
     Ok([
-        placed(docked[0], natives[0], choice, "receptor")?,
-        placed(docked[1], natives[1], choice, "ligand")?,
+        placed(receptor, natives[0], choice, "receptor")?,
+        placed(ligand, natives[1], choice, "ligand")?,
     ])
 }
 
@@ -231,13 +231,11 @@ fn complexes<'a>(
     let mut found: Vec<NativeComplex> = Vec::new();
     for one in all {
         let [receptor, ligand] = [0, 1].map(|side| -> Vec<String> {
-            let PlacedCopy {
-                native, placements, ..
-            } = copies[side];
-            let segments = placements[one.placements[side]].native_segments();
+            let copy = copies[side];
+            let segments = copy.placements[one.placements[side]].native_segments();
             let names = segments
-                .into_iter()
-                .map(|segment| &native.segments[segment].name);
+                .iter()
+                .map(|&segment| &copy.native.segments[segment].name);
             names.cloned().collect()
         });
         let next = NativeComplex {
@@ -249,7 +247,7 @@ fn complexes<'a>(
             (&known.receptor, &known.ligand) == (&next.receptor, &next.ligand)
                 || (&known.receptor, &known.ligand) == (&next.ligand, &next.receptor)
         };
-        if found.len() < MOST_LISTED && !found.iter().any(is_known) {
+        if found.len() < MAX_LISTED && !found.iter().any(is_known) {
             found.push(next);
         }
     }
@@ -269,11 +267,8 @@ fn split(complex: &Residues, placements: [&Placement; 2]) -> [Part; 2] {
             let members = complex.segments[segment].members.iter().copied();
             let members = if segments[other].contains(&segment) {
                 let is_ours = |&member: &usize| {
-                    let (near, far) = (
-                        nearest(&matched[this], member),
-                        nearest(&matched[other], member),
-                    );
-                    near < far || (near == far && this == 0)
+                    let [own, others] = [this, other].map(|side| nearest(&matched[side], member));
+                    own < others || (own == others && this == 0)
                 };
                 members.filter(is_ours).collect()
             } else {
@@ -300,15 +295,13 @@ fn in_group(placement: &Placement, group: &[(usize, Vec<usize>)]) -> Placement {
     let places: HashMap<usize, usize> = members.zip(0..).collect();
     let mut placement = placement.clone();
     for chain in &mut placement.chains {
-        chain.native = group
+        let place = group
             .iter()
-            .position(|(segment, _)| *segment == chain.native)
-            .unwrap_or_default();
-        chain.pairs = chain
-            .pairs
-            .iter()
-            .filter_map(|&(user, native)| Some((user, *places.get(&native)?)))
-            .collect();
+            .position(|(segment, _)| *segment == chain.native);
+        chain.native = place.unwrap_or_default();
+        let pairs = chain.pairs.iter();
+        let pairs = pairs.filter_map(|&(user, native)| Some((user, *places.get(&native)?)));
+        chain.pairs = pairs.collect();
     }
     placement
 }

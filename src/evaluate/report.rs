@@ -8,7 +8,7 @@ use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 
 /// Share of a docked side's residues below which the match is worth a warning.
 const GOOD_DOCKED_SHARE: f64 = 0.7;
-/// Backbone RMSD in Å of a docked side with the native's above which it is.
+/// Backbone RMSD in Å of a docked side from the native's above which the match is worth a warning.
 const GOOD_FIT: f64 = 5.0;
 
 /// Method by which a chain's residues were matched.
@@ -79,9 +79,9 @@ pub struct SideMatch {
 /// Two groups of the native's chains that touch and that the docked sides superpose on.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct NativeComplex {
-    /// The native's chains on which the receptor lies.
+    /// The native's chains that the receptor is superposed on.
     pub receptor: Vec<String>,
-    /// Those on which the ligand lies.
+    /// Those that the ligand is superposed on.
     pub ligand: Vec<String>,
     /// Residue contacts (5 Å) between them.
     pub contacts: usize,
@@ -104,16 +104,16 @@ pub struct MatchReport {
     pub dockq_ligand: &'static str,
     /// The chains matched, as `DOCKED:NATIVE,DOCKED:NATIVE`.
     pub native_chains: String,
-    /// Ways of assigning the native's chains to the docked ones; every pose is given the best of them by `dockq`. This
-    /// report is of one of them: of the first, unless a pose is named.
+    /// Assignments of the native's chains to the docked ones; every pose is given the best of them by `dockq`. This
+    /// report is of the first, unless a pose is named.
     pub permutations: usize,
     /// Chains of a native complex to which no docked chain is assigned.
     pub unused_native_chains: Vec<String>,
     /// The complexes that the native holds, at most 24: those of equal chain names first, then those of most contacts.
     /// Crystal contacts of a few residues, by which no pose is measured, come last.
     pub complexes: Vec<NativeComplex>,
-    /// What the user should know before trusting the figures: a docked side of which less than 70% is matched, or whose
-    /// backbone lies more than 5 Å RMSD from the native's. Beyond 15 Å the class of every pose is `incorrect`.
+    /// Warnings before trusting the figures: a docked side of which less than 70% is matched, or whose backbone is more
+    /// than 5 Å RMSD from the native's. Beyond 15 Å the class of every pose is `incorrect`.
     pub warnings: Vec<String>,
 }
 
@@ -132,14 +132,14 @@ impl MatchReport {
             }
             if side.backbone_rmsd > MAX_FIT_RMSD {
                 warnings.push(format!(
-                    "the docked {name} does not fit the native: its backbone lies {:.1} Å RMSD from it, more than \
+                    "the docked {name} does not fit the native: its backbone is {:.1} Å RMSD from it, more than \
                      {MAX_FIT_RMSD:.0} Å, so every pose counts as incorrect; name native chains that belong together, \
                      as in --native FILE:A,B, or dock parts that move apart",
                     side.backbone_rmsd
                 ));
             } else if side.backbone_rmsd > GOOD_FIT {
                 warnings.push(format!(
-                    "the docked {name} has another shape than the native's: its backbone lies {:.1} Å RMSD from it",
+                    "the docked {name} has another shape than the native's: its backbone is {:.1} Å RMSD from it",
                     side.backbone_rmsd
                 ));
             }
@@ -194,10 +194,5 @@ impl SideMatch {
             unmatched_native_chains: native
                 .unused(|index| assignment.iter().any(|c| c.native == index)),
         }
-    }
-
-    /// Share, 0 to 1, of the native's interface residues of this side that are matched.
-    pub fn interface_share(&self) -> f64 {
-        self.interface_matched as f64 / self.interface_residues.max(1) as f64
     }
 }

@@ -9,17 +9,16 @@ use super::residues::Residues;
 use crate::evaluate::matching::superposition::{PointPair, Superposition};
 
 /// The backbone atoms that both residues of a pair have, for each (user's, native's) pair of residues.
-pub(super) fn backbone_pairs(
+pub(super) fn backbone_pairs<'a>(
     user: &Residues,
     native: &Residues,
-    pairs: impl Iterator<Item = (usize, usize)>,
+    pairs: impl IntoIterator<Item = &'a (usize, usize)>,
 ) -> Vec<PointPair> {
-    pairs
-        .flat_map(|(i, j)| {
-            let (ours, theirs) = (&user.residues[i].backbone, &native.residues[j].backbone);
-            ours.iter().zip(theirs).filter_map(|(x, y)| (*x).zip(*y))
-        })
-        .collect()
+    let atoms = pairs.into_iter().flat_map(|&(i, j)| {
+        let (ours, theirs) = (&user.residues[i].backbone, &native.residues[j].backbone);
+        ours.iter().zip(theirs).filter_map(|(x, y)| (*x).zip(*y))
+    });
+    atoms.collect()
 }
 
 /// One side of a complex: the user's molecule, the native's, and which residue is which.
@@ -35,11 +34,7 @@ pub(super) struct Side<'a> {
 
 impl Side<'_> {
     fn superposition(&self, keep: impl Fn(usize) -> bool) -> Superposition {
-        let pairs = self
-            .pairs
-            .iter()
-            .copied()
-            .filter(|&(_, native)| keep(native));
+        let pairs = self.pairs.iter().filter(|&&(_, native)| keep(native));
         Superposition::new(&backbone_pairs(self.user, self.native, pairs))
     }
 }
@@ -70,7 +65,7 @@ impl RmsdForms {
     pub fn new(sides: [Side; 2], across: &[AcrossPair]) -> Self {
         let matched: [HashSet<usize>; 2] =
             sides.map(|side| side.pairs.iter().map(|pair| pair.1).collect());
-        let pairs = across.iter().map(AcrossPair::residues);
+        let pairs = across.iter().map(|pair| pair.residues);
         let near: Vec<[usize; 2]> = pairs
             .filter(|pair| (0..2).all(|side| matched[side].contains(&pair[side])))
             .collect();

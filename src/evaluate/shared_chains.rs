@@ -1,5 +1,4 @@
-//! Whether one molecule to dock is part of the other: a chain docked against the file of the complex that holds it
-//! already.
+//! Whether one molecule to dock is part of the other: a chain docked against the file of a complex that holds it.
 
 use std::collections::HashSet;
 
@@ -23,7 +22,7 @@ const MIN_EQUAL: f64 = 0.8;
 pub struct SharedChains {
     /// Chain names: the one's, and the other's of the same sequence.
     pub pairs: Vec<(String, String)>,
-    /// Names of the other's chains that are none of these; none where its chains share one name.
+    /// Names of the other's chains that are none of these; empty if its chains share one name.
     pub rest: Vec<String>,
 }
 
@@ -37,22 +36,21 @@ pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
         (0..residues.segments.len()).filter(long).collect()
     };
     let mut free = chains(&other);
-    let wanted = chains(&one);
-    if wanted.is_empty() || free.len() <= wanted.len() {
+    let sought = chains(&one);
+    if sought.is_empty() || free.len() <= sought.len() {
         return None;
     }
     let mut shared = Vec::new();
-    for segment in wanted {
+    for segment in sought {
         let own = one.at(&one.segments[segment].members);
-        let mut best: Option<(usize, usize)> = None;
+        let mut best = (0, None);
         for (index, &place) in free.iter().enumerate() {
             let equal = equal_residues(&own, &other.at(&other.segments[place].members));
-            if equal > best.map_or(0, |(equal, _)| equal) {
-                best = Some((equal, index));
+            if equal > best.0 {
+                best = (equal, Some(index));
             }
         }
-        let (_, index) = best?;
-        shared.push((segment, free.remove(index)));
+        shared.push((segment, free.remove(best.1?)));
     }
     let pairs: Vec<(String, String)> = shared
         .into_iter()
@@ -64,10 +62,7 @@ pub fn shared_chains(one: &Molecule, other: &Molecule) -> Option<SharedChains> {
             rest.push(chain);
         }
     }
-    if rest
-        .iter()
-        .any(|chain| pairs.iter().any(|(_, taken)| taken == chain))
-    {
+    if pairs.iter().any(|(_, taken)| rest.contains(taken)) {
         rest.clear();
     }
     Some(SharedChains { pairs, rest })

@@ -147,7 +147,7 @@ fn dockq_superposes_the_larger_side() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(32))]
 
-    /// The native may lie anywhere, and so may each of the user's files: only where atoms end up counts.
+    /// The native may be in any frame, and so may each file of the user: only the final places of atoms count.
     #[test]
     fn frames_do_not_matter(
         turns in prop::array::uniform3(prop::array::uniform4(0.1..1.0f64)),

@@ -1,7 +1,7 @@
 //! Shape complementarity Sc (Lawrence & Colman, J. Mol. Biol. 234 (1993) 946-950): 1 where surfaces match, about 0.7 in most
 //! interfaces of proteins.
 //!
-//! Both molecular surfaces are made alone. Of each, the part is taken that the other keeps from the probe, but for a band of
+//! Both molecular surfaces are made alone. The part of each that the other keeps from the probe counts, but for a band of
 //! 1.5 Å about its rim. At a dot the surfaces match by -(n . n') exp(-0.5 d^2), in which d is the distance to the nearest
 //! dot of the other side and n, n' are the outward normals of both. Sc is the mean of both sides' medians. Radii of atoms are
 //! those of this program, which differ a little from the authors'.
@@ -20,30 +20,30 @@ const DENSITY: f64 = 15.0;
 const BAND: f64 = 1.5;
 /// Weight of the squared distance, in 1/Å^2.
 const WEIGHT: f64 = 0.5;
-/// Atoms farther than this from the other side have no part in it, in Å.
+/// Atoms farther than this from the other side have no effect, in Å.
 const NEAR: f64 = 8.0;
 
-/// Shape complementarity of two molecules where they stand; `None` where nothing of one is buried by the other.
+/// Shape complementarity of two molecules in place; `None` if neither buries a part of the other.
 pub fn shape_complementarity(molecules: [&Molecule; 2]) -> Option<f64> {
     let heavy = |molecule: &Molecule| -> Vec<(Vector3<f64>, f64)> {
         let atoms = molecule.atoms.iter().filter(|atom| !atom.is_hydrogen());
-        atoms
-            .map(|atom| (Vector3::from(atom.position), atom.radius))
-            .collect()
+        let balls = atoms.map(|atom| (Vector3::from(atom.position), atom.radius));
+        balls.collect()
     };
     let sides = molecules.map(heavy);
     let all = sides.iter().flatten();
     let count = all.clone().count().max(1) as f64;
     let middle = all.map(|(center, _)| center).sum::<Vector3<f64>>() / count;
     let sides = sides.map(|side| -> Vec<(Vector3<f64>, f64)> {
-        side.into_iter()
+        let balls = side.into_iter();
+        balls
             .map(|(center, radius)| (center - middle, radius))
             .collect()
     });
     of_balls([&sides[0], &sides[1]])
 }
 
-/// The same of balls about the origin.
+/// The shape complementarity of balls about the origin.
 fn of_balls(sides: [&[(Vector3<f64>, f64)]; 2]) -> Option<f64> {
     let cells = sides.map(|side| {
         let members = side.iter().map(|&(center, radius)| Member {
@@ -54,12 +54,12 @@ fn of_balls(sides: [&[(Vector3<f64>, f64)]; 2]) -> Option<f64> {
     });
     let buried: [Vec<SurfaceDot>; 2] = std::array::from_fn(|side| {
         let spheres = sides[side].iter().map(|&(center, radius)| {
-            let mut is_wanted = false;
-            cells[1 - side].visit_within(center.into(), NEAR, |_, _| is_wanted = true);
+            let mut has_dots = false;
+            cells[1 - side].visit_within(center.into(), NEAR, |_, _| has_dots = true);
             Sphere {
                 center,
                 radius,
-                is_wanted,
+                has_dots,
             }
         });
         let dots = surface_dots(&spheres.collect::<Vec<_>>(), PROBE, DENSITY);
@@ -97,30 +97,28 @@ fn cells_of(dots: &[SurfaceDot], edge: f64) -> CellList<Vector3<f64>> {
     CellList::new(members.collect(), edge)
 }
 
-/// The median of how well some dots match those of the other side; `None` where either has none.
+/// The median match of some dots with those of the other side; `None` if either has none.
 fn median(dots: &[SurfaceDot], others: &[SurfaceDot]) -> Option<f64> {
     if others.is_empty() {
         return None;
     }
     let cells = cells_of(others, 1.0);
-    let mut matches: Vec<f64> = dots
-        .iter()
-        .map(|dot| {
-            let mut reach = 1.0;
-            loop {
-                let mut nearest: Option<(f64, Vector3<f64>)> = None;
-                cells.visit_within(dot.at.into(), reach, |&normal, square| {
-                    if nearest.is_none_or(|(least, _)| square < least) {
-                        nearest = Some((square, normal));
-                    }
-                });
-                if let Some((square, normal)) = nearest {
-                    return -dot.normal.dot(&normal) * (-WEIGHT * square).exp();
+    let match_of = |dot: &SurfaceDot| {
+        let mut reach = 1.0;
+        loop {
+            let mut nearest: Option<(f64, Vector3<f64>)> = None;
+            cells.visit_within(dot.at.into(), reach, |&normal, square| {
+                if nearest.is_none_or(|(least, _)| square < least) {
+                    nearest = Some((square, normal));
                 }
-                reach *= 2.0;
+            });
+            if let Some((square, normal)) = nearest {
+                return -dot.normal.dot(&normal) * (-WEIGHT * square).exp();
             }
-        })
-        .collect();
+            reach *= 2.0;
+        }
+    };
+    let mut matches: Vec<f64> = dots.iter().map(match_of).collect();
     matches.sort_by(f64::total_cmp);
     let half = matches.len() / 2;
     match matches.len() % 2 {
@@ -142,7 +140,7 @@ mod tests {
             .collect()
     }
 
-    /// Flat sheets a gap apart match by exp(-gap^2 / 2) everywhere, but for what is left of their balls.
+    /// Flat sheets a gap apart match by exp(-gap^2 / 2) everywhere, but for the remainders of their balls.
     #[test]
     fn flat_sheets_match_by_their_gap() {
         for gap in [0.0, 1.0] {

@@ -5,14 +5,14 @@ use knotdock_structures::PolarAtom;
 use knotdock_structures::molecule::{Atom, Molecule};
 use knotdock_structures::neighbours::{CellList, Member};
 use serde::Serialize;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use super::{CLASH, CONTACT, HYDROGEN_BOND, ResidueName, SALT_BRIDGE};
 
-/// Two residues in contact, by default given by their places in [`ContactFinder::residues`].
+/// Two residues in contact, by default given by their indices in [`ContactFinder::residues`].
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Contact<Residue = usize> {
-    /// That of each side.
+    /// The residue of each side.
     pub residues: [Residue; 2],
     /// Distance of their nearest heavy atoms, in Å.
     pub distance: f64,
@@ -29,7 +29,7 @@ pub struct ContactFinder<'a> {
     /// By their places relative to the middle: coordinates may be far from zero.
     fixed: CellList<Site<'a>>,
     middle: [f64; 3],
-    /// Most atoms of a pose are far from the fixed ones, which this says at once.
+    /// Most atoms of a pose are far from the fixed ones, which this shows at once.
     near: NearCells,
     moved: Vec<Site<'a>>,
     residues: [Vec<ResidueName>; 2],
@@ -65,8 +65,8 @@ impl<'a> ContactFinder<'a> {
         self.residues.each_ref().map(Vec::as_slice)
     }
 
-    /// The residues in contact where the second molecule takes each of some poses at once (the copies of a ring), in
-    /// the order of side 0, then of side 1.
+    /// The residues in contact if the second molecule takes several poses at once (the copies of a ring), in the order
+    /// of side 0, then of side 1.
     pub fn contacts(&self, poses: &[Pose]) -> Vec<Contact> {
         let mut found: BTreeMap<[usize; 2], Contact> = BTreeMap::new();
         for pose in poses {
@@ -108,35 +108,27 @@ impl<'a> ContactFinder<'a> {
     }
 }
 
-/// Cells of the edge [`CONTACT`] that may hold something in contact with one of some points.
+/// Cells of the edge [`CONTACT`] that may hold an atom in contact with one of some points.
 struct NearCells {
     low: [f64; 3],
     counts: [usize; 3],
-    /// Empty where there would be too many cells: then any place may.
+    /// Empty if there would be too many cells: then any place may.
     marked: Vec<bool>,
 }
 
 impl NearCells {
-    /// Most cells; points that lie farther apart are no molecule.
+    /// Most cells; points that are farther apart are no molecule.
     const MAX: usize = 1 << 22;
 
     fn new(points: Vec<[f64; 3]>) -> Self {
-        let end = |pick: fn(f64, f64) -> f64, start: f64| {
-            points.iter().fold([start; 3], |end: [f64; 3], point| {
-                std::array::from_fn(|axis| pick(end[axis], point[axis]))
-            })
-        };
-        let (low, high) = (
-            end(f64::min, f64::INFINITY),
-            end(f64::max, f64::NEG_INFINITY),
-        );
+        let along = |axis: usize| points.iter().map(move |point| point[axis]);
         // One cell more at either end.
-        let low = low.map(|part| part - CONTACT);
+        let low = [0, 1, 2].map(|axis| along(axis).fold(f64::INFINITY, f64::min) - CONTACT);
+        let high = [0, 1, 2].map(|axis| along(axis).fold(f64::NEG_INFINITY, f64::max));
         let counts: [usize; 3] =
             std::array::from_fn(|axis| ((high[axis] - low[axis]) / CONTACT) as usize + 2);
-        let all = counts
-            .iter()
-            .try_fold(1_usize, |all, &count| all.checked_mul(count));
+        let mut all = counts.iter();
+        let all = all.try_fold(1_usize, |all, &count| all.checked_mul(count));
         let mut cells = Self {
             low,
             counts,
@@ -146,10 +138,7 @@ impl NearCells {
             return cells;
         };
         let mut marked = vec![false; all];
-        for point in points {
-            let Some([x, y, z]) = cells.cell(point) else {
-                continue;
-            };
+        for [x, y, z] in points.into_iter().filter_map(|point| cells.cell(point)) {
             let about =
                 |center: usize, count: usize| center.saturating_sub(1)..(center + 2).min(count);
             for i in about(x, counts[0]) {
@@ -178,12 +167,12 @@ impl NearCells {
     }
 }
 
-/// An atom with its part in hydrogen bonds and salt bridges.
+/// An atom with its role in hydrogen bonds and salt bridges.
 struct Site<'a> {
     residue: usize,
     atom: &'a Atom,
     polar: PolarAtom,
-    /// Sign of the charge that it may bring to a salt bridge.
+    /// Sign of its charge in a salt bridge.
     sign: i8,
 }
 
@@ -205,16 +194,13 @@ fn sites(molecule: &Molecule, ph: f64) -> (Vec<Site<'_>>, Vec<ResidueName>) {
                 },
             });
         }
-        names.extend(
-            atoms
-                .first()
-                .map(|&at| ResidueName::of(&molecule.atoms[at])),
-        );
+        let first = atoms.first().map(|&at| &molecule.atoms[at]);
+        names.extend(first.map(ResidueName::of));
     }
     (sites, names)
 }
 
-/// Places of the heavy atoms of each residue that has any: the residues of [`ContactFinder::residues`].
+/// Indices of the heavy atoms of each residue that has any: the residues of [`ContactFinder::residues`].
 pub fn heavy_residues(molecule: &Molecule) -> Vec<Vec<usize>> {
     let atoms = molecule.atoms.iter();
     let heavy: Vec<bool> = atoms.map(|atom| !atom.is_hydrogen()).collect();
@@ -226,8 +212,7 @@ fn from(one: [f64; 3], other: [f64; 3]) -> [f64; 3] {
     std::array::from_fn(|axis| other[axis] - one[axis])
 }
 
-/// Whether a free side in a direction is towards what lies `between` two atoms away; one without a direction has no
-/// other side.
+/// Whether the free side in a direction is towards an atom at `between`; an atom without a direction is free on all sides.
 fn faces(direction: [f64; 3], between: [f64; 3]) -> bool {
     let along: f64 = (0..3).map(|axis| direction[axis] * between[axis]).sum();
     direction == [0.0; 3] || along > 0.0
@@ -236,45 +221,36 @@ fn faces(direction: [f64; 3], between: [f64; 3]) -> bool {
 /// Clusters that are counted, the best ones.
 pub const CONSENSUS: usize = 50;
 
-/// A residue, and how many of the best clusters touch it.
+/// A residue, with the number of best clusters that touch it.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct ResidueShare {
     /// The residue.
     pub residue: ResidueName,
     /// Clusters whose best pose has it in contact.
     pub clusters: usize,
-    /// The same as a share of all that were counted.
+    /// Their share of all clusters that were counted.
     pub share: f64,
 }
 
 /// The share of some clusters that touch each residue of either side. `clusters` are the contacts of the best pose of
-/// each. Residues are in the order of their files; those that no cluster touches are
-/// among them.
+/// each. Residues are in the order of their files, those that no cluster touches included.
 pub fn residue_shares(finder: &ContactFinder, clusters: &[&[Contact]]) -> [Vec<ResidueShare>; 2] {
     let sides = finder.residues();
     let mut counts = sides.map(|residues| vec![0_usize; residues.len()]);
     for contacts in clusters {
         for (side, counts) in counts.iter_mut().enumerate() {
-            let mut touched: Vec<usize> = contacts
-                .iter()
-                .map(|contact| contact.residues[side])
-                .collect();
-            touched.sort_unstable();
-            touched.dedup();
-            for residue in touched {
+            let touched = contacts.iter().map(|contact| contact.residues[side]);
+            for residue in touched.collect::<BTreeSet<usize>>() {
                 counts[residue] += 1;
             }
         }
     }
     std::array::from_fn(|side| {
         let residues = sides[side].iter().zip(&counts[side]);
-        let share = |(residue, &clusters_of): (&ResidueName, &usize)| ResidueShare {
+        let share = |(residue, &count): (&ResidueName, &usize)| ResidueShare {
             residue: residue.clone(),
-            clusters: clusters_of,
-            share: match clusters.len() {
-                0 => 0.0,
-                all => clusters_of as f64 / all as f64,
-            },
+            clusters: count,
+            share: count as f64 / clusters.len().max(1) as f64,
         };
         residues.map(share).collect()
     })

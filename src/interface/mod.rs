@@ -2,12 +2,12 @@
 //!
 //! # Conventions
 //!
-//! - A complex is two molecules where they stand, side 0 and side 1. Lengths are in Å, areas in Å^2.
+//! - A complex is two molecules in place, side 0 and side 1. Lengths are in Å, areas in Å^2.
 //! - **Contact**: two residues with heavy atoms nearer than 5 Å (Méndez et al., Proteins 52 (2003) 51-67). Their distance
 //!   is that of the nearest heavy atoms.
 //! - **Hydrogen bond**: a donor and an acceptor 2.2 to 3.5 Å apart (Baker & Hubbard, Prog. Biophys. Mol. Biol. 44 (1984)
-//!   97-179), each on the side of the other that faces away from what it is bonded to. Files mostly lack hydrogens, so
-//!   that their angles cannot be judged.
+//!   97-179), each on the side of the other that faces away from its bonded atoms. Files mostly lack hydrogens, so
+//!   angles at them cannot be judged.
 //! - **Salt bridge**: a nitrogen of a positive group within 4 Å of an oxygen of a negative one (Barlow & Thornton, J.
 //!   Mol. Biol. 168 (1983) 867-885), at most one for two residues. Groups are side chains and phosphates that carry a
 //!   charge in the electrostatic effect, and their atoms are those that share it: no bases, sugars, esters or termini.
@@ -75,27 +75,23 @@ pub struct Interface {
     pub hydrogen_bonds: usize,
     /// Salt bridges.
     pub salt_bridges: usize,
-    /// Surface that each side loses to the other, in Å^2.
+    /// Surface of each side that the other buries, in Å^2.
     pub buried: [f64; 2],
-    /// Shape complementarity Sc, 1 for surfaces that match; `None` where nothing is buried but a rim.
+    /// Shape complementarity Sc, 1 for surfaces that match; `None` if nothing is buried but a rim.
     pub shape_complementarity: Option<f64>,
 }
 
 impl Interface {
-    /// The interface of two molecules where they stand; charges are those at a pH.
+    /// The interface of two molecules in place; charges are those at a pH.
     pub fn of([first, second]: [&Molecule; 2], ph: f64) -> Self {
         let finder = ContactFinder::new([first, second], ph);
         let contacts = finder.contacts(&[Pose::identity()]);
-        let [first_names, second_names] = finder.residues();
         let touching = |side: usize| {
             let residues = contacts.iter().map(|contact| contact.residues[side]);
             residues.collect::<BTreeSet<usize>>().len()
         };
         let pair = |contact: &Contact| Contact {
-            residues: [
-                first_names[contact.residues[0]].clone(),
-                second_names[contact.residues[1]].clone(),
-            ],
+            residues: [0, 1].map(|side| finder.residues()[side][contact.residues[side]].clone()),
             distance: contact.distance,
             hydrogen_bonds: contact.hydrogen_bonds,
             hydrogen_bond_distance: contact.hydrogen_bond_distance,

@@ -1,4 +1,4 @@
-//! The score of two molecules where they stand, without a search.
+//! The score of two molecules in place, without a search.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::effect::Effect;
@@ -21,7 +21,7 @@ pub struct PlacedScore {
 }
 
 impl PlacedScore {
-    /// Both together: what a run ranks such a pose by, sharp fits left out.
+    /// Their sum, by which a run ranks such a pose, sharp fits left out.
     pub fn pose_score(&self) -> f64 {
         self.search_score + self.pose_terms.sum()
     }

@@ -16,7 +16,7 @@ const SLACK: f64 = 1e-7;
 pub(super) struct SurfaceDot {
     /// Position, in Å.
     pub at: Vector3<f64>,
-    /// Away from the molecule, of length 1; the probe that touches here lies along it.
+    /// Away from the molecule, of length 1; the probe that touches here is along it.
     pub normal: Vector3<f64>,
 }
 
@@ -25,11 +25,11 @@ pub(super) struct SurfaceDot {
 pub(super) struct Sphere {
     pub center: Vector3<f64>,
     pub radius: f64,
-    /// Whether dots are wanted on the faces that it is part of.
-    pub is_wanted: bool,
+    /// Whether dots are placed on the faces that it is part of.
+    pub has_dots: bool,
 }
 
-/// Dots on the faces that have a wanted ball, `density` of them to an Å^2, for a probe of a radius. Balls lie about the
+/// Dots on the faces of the balls that have dots, `density` of them per Å^2, for a probe of a radius. Balls are about the
 /// origin.
 pub(super) fn surface_dots(spheres: &[Sphere], probe: f64, density: f64) -> Vec<SurfaceDot> {
     let surface = Surface::new(spheres, probe, density);
@@ -40,7 +40,7 @@ pub(super) fn surface_dots(spheres: &[Sphere], probe: f64, density: f64) -> Vec<
         item: (),
     });
     let held = CellList::new(members.collect(), probe);
-    // Where probes overlap, the surface is only what none of them reaches.
+    // If probes overlap, the surface is only the part that none of them reaches.
     let is_out = |dot: &SurfaceDot| {
         let mut is_out = true;
         held.visit_within(dot.at.into(), probe - SLACK, |(), _| is_out = false);
@@ -75,7 +75,7 @@ impl Circle {
 
 struct Surface<'a> {
     spheres: &'a [Sphere],
-    /// Of each ball those that a probe can touch together with it.
+    /// For each ball, those that a probe can touch together with it.
     neighbours: Vec<Vec<usize>>,
     probe: f64,
     /// Distance between dots.
@@ -84,11 +84,8 @@ struct Surface<'a> {
 
 impl<'a> Surface<'a> {
     fn new(spheres: &'a [Sphere], probe: f64, density: f64) -> Self {
-        let largest = spheres
-            .iter()
-            .map(|sphere| sphere.radius)
-            .fold(0.0, f64::max)
-            + probe;
+        let radii = spheres.iter().map(|sphere| sphere.radius);
+        let largest = radii.fold(0.0, f64::max) + probe;
         let members = spheres.iter().enumerate().map(|(item, sphere)| Member {
             position: sphere.center.into(),
             item,
@@ -106,21 +103,20 @@ impl<'a> Surface<'a> {
             found.sort_unstable();
             found
         });
-        let neighbours = neighbours.collect();
         Self {
+            neighbours: neighbours.collect(),
             spheres,
-            neighbours,
             probe,
             step: density.sqrt().recip(),
         }
     }
 
-    /// Distance from a ball at which the centres of probes that touch it lie.
+    /// Distance from a ball of the centres of probes that touch it.
     fn grown(&self, index: usize) -> f64 {
         self.spheres[index].radius + self.probe
     }
 
-    /// Whether a probe may be at a place, as far as it is not for the balls that it touches.
+    /// Whether no ball but those that it touches keeps a probe from a place.
     fn is_free(&self, at: Vector3<f64>, near: usize, touched: &[usize]) -> bool {
         let holds = |&other: &usize| {
             let grown = self.grown(other) - SLACK;
@@ -130,19 +126,15 @@ impl<'a> Surface<'a> {
         !others.filter(|other| !touched.contains(other)).any(holds)
     }
 
-    fn wanted(&self, indices: &[usize]) -> bool {
-        indices.iter().any(|&index| self.spheres[index].is_wanted)
+    fn has_dots(&self, indices: &[usize]) -> bool {
+        indices.iter().any(|&index| self.spheres[index].has_dots)
     }
 
     /// Dots on the balls themselves.
     fn convex(&self) -> Vec<SurfaceDot> {
         let mut dots = Vec::new();
-        for (index, sphere) in self
-            .spheres
-            .iter()
-            .enumerate()
-            .filter(|(_, one)| one.is_wanted)
-        {
+        let spheres = self.spheres.iter().enumerate();
+        for (index, sphere) in spheres.filter(|(_, one)| one.has_dots) {
             let area = 4.0 * std::f64::consts::PI * sphere.radius * sphere.radius;
             for direction in spiral(count(area / (self.step * self.step))) {
                 let normal = Vector3::from(direction);
@@ -160,9 +152,8 @@ impl<'a> Surface<'a> {
     /// Pairs of balls that a probe can touch together, with the circle of its centres.
     fn circles(&self) -> impl Iterator<Item = ([usize; 2], Circle)> {
         let pairs = (0..self.spheres.len()).flat_map(|first| {
-            let after = self.neighbours[first]
-                .iter()
-                .filter(move |&&other| other > first);
+            let neighbours = self.neighbours[first].iter();
+            let after = neighbours.filter(move |&&other| other > first);
             after.map(move |&second| [first, second])
         });
         pairs.filter_map(|pair| Some((pair, self.circle(pair)?)))
@@ -194,8 +185,8 @@ impl<'a> Surface<'a> {
     /// Dots on the saddles between two balls.
     fn saddles(&self) -> Vec<SurfaceDot> {
         let mut dots = Vec::new();
-        for (pair, circle) in self.circles().filter(|(pair, _)| self.wanted(pair)) {
-            // Seen from the probe, from where it touches the one ball to where it touches the other.
+        for (pair, circle) in self.circles().filter(|(pair, _)| self.has_dots(pair)) {
+            // Seen from the probe, from its contact with the one ball to that with the other.
             let from = -(circle.along[0] / self.grown(pair[0])).asin();
             let to = (circle.along[1] / self.grown(pair[1])).asin();
             let rings = count(self.probe * (to - from) / self.step);
@@ -231,7 +222,7 @@ impl<'a> Surface<'a> {
             let third = self.neighbours[pair[1]].iter().filter(|&&third| {
                 third > pair[1] && self.neighbours[pair[0]].binary_search(&third).is_ok()
             });
-            for &third in third.filter(|&&third| self.wanted(&[pair[0], pair[1], third])) {
+            for &third in third.filter(|&&third| self.has_dots(&[pair[0], pair[1], third])) {
                 let touched = [pair[0], pair[1], third];
                 let to = self.spheres[third].center - circle.center;
                 let (a, b) = (to.dot(&circle.axes[1]), to.dot(&circle.axes[2]));
@@ -254,24 +245,20 @@ impl<'a> Surface<'a> {
         probes
     }
 
-    /// Dots on the probes, between the places where each touches its three balls.
+    /// Dots on the probes, between the points at which each touches its three balls.
     fn triangles(&self, probes: &[Probe]) -> Vec<SurfaceDot> {
         let area = 4.0 * std::f64::consts::PI * self.probe * self.probe;
-        let directions: Vec<Vector3<f64>> = spiral(count(area / (self.step * self.step)))
-            .into_iter()
-            .map(Vector3::from)
-            .collect();
+        let directions = spiral(count(area / (self.step * self.step))).into_iter();
+        let directions: Vec<Vector3<f64>> = directions.map(Vector3::from).collect();
         let mut dots = Vec::new();
         for probe in probes {
-            let corners = probe
-                .touched
-                .map(|index| self.spheres[index].center - probe.at);
-            let [a, b, c] = corners;
+            let touched = probe.touched;
+            let [a, b, c] = touched.map(|index| self.spheres[index].center - probe.at);
             let sign = a.dot(&b.cross(&c)).signum();
             let sides = [b.cross(&c), c.cross(&a), a.cross(&b)].map(|side| side * sign);
-            let inside = directions
-                .iter()
-                .filter(|direction| sides.iter().all(|side| side.dot(direction) > 0.0));
+            let is_inside =
+                |direction: &&Vector3<f64>| sides.iter().all(|side| side.dot(direction) > 0.0);
+            let inside = directions.iter().filter(is_inside);
             dots.extend(inside.map(|direction| SurfaceDot {
                 at: probe.at + direction * self.probe,
                 normal: -direction,
@@ -295,7 +282,7 @@ mod tests {
         let sphere = |&(center, radius): &([f64; 3], f64)| Sphere {
             center: Vector3::from(center),
             radius,
-            is_wanted: true,
+            has_dots: true,
         };
         balls.iter().map(sphere).collect()
     }

@@ -1,4 +1,4 @@
-//! Two meshes as knots that dock: how they are sampled, and which lengths follow from that.
+//! Two meshes as knots that dock: their sampling, and the lengths that follow from it.
 //!
 //! # Conventions
 //!
@@ -10,8 +10,8 @@
 //!
 //! [`samplers`] has a file for each. `lattice` makes balls of one radius and correlates them by B&I's cone; `bi` makes
 //! those of Algorithm 1 and correlates them by the product kernel. Both score two flat faces most at a gap of one
-//! offset: **the offset r0 is the gap that is looked for**, of a peg in its hole the clearance. docs/method/mesh_docking.md
-//! compares them.
+//! offset: **the offset r0 is the gap of the search**, such as the clearance of a peg in its hole.
+//! docs/method/mesh_docking.md compares them.
 
 pub mod samplers;
 
@@ -31,9 +31,9 @@ use crate::mesh::samplers::{BallsToWeigh, PartToSample, Sampler, bi, lattice, un
 
 /// Default radius of clusters in offsets: that of molecules.
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
-/// Length that stands for one Ångström, in offsets.
+/// Length in place of one Ångström, in offsets.
 const ANGSTROM: f64 = 1.0 / 2.2;
-/// The remedy where one part is far larger than the other.
+/// The remedy for parts of very different size.
 const CUT_DOWN: &str =
     "where one part is much larger than the other, cut it down to what is near the joint";
 /// Longest edges of a bounding box that single precision carries through the search.
@@ -57,7 +57,7 @@ pub struct MeshOptions {
     pub per_axis: usize,
     /// The sampler.
     pub sampler: Sampler,
-    /// Skin offset r0, the gap looked for; `None`: [`default_offset`].
+    /// Skin offset r0, the gap of the search; `None`: 2 (`eps_A` + `eps_B`), at most twice the smaller feature size.
     pub offset: Option<f64>,
     /// Weights of the balls.
     pub weights: SampleWeights,
@@ -117,10 +117,10 @@ pub struct MeshSceneError {
 
 impl From<KnotsError> for MeshSceneError {
     fn from(error: KnotsError) -> Self {
+        let remedy = "check the mesh, or sample it on a finer --sample-grid";
         Self {
             part: None,
-            error: Error::input(error)
-                .help("check the mesh, or sample it on a finer --sample-grid"),
+            error: Error::input(error).help(remedy),
         }
     }
 }
@@ -156,9 +156,9 @@ pub struct SampledPart {
     pub sampler: Sampler,
     /// Number of balls.
     pub balls: usize,
-    /// Their radius, of balls of every size the largest.
+    /// Their radius; the largest for balls of every size.
     pub radius: f64,
-    /// The smallest.
+    /// The smallest radius.
     pub smallest_radius: f64,
     /// Nodes along each edge of the grid.
     pub per_axis: usize,
@@ -172,9 +172,9 @@ pub struct SampledPart {
     pub inside_nodes: usize,
     /// Median local feature size, as a radius.
     pub feature_size: f64,
-    /// How the weights were fitted; `null` where they are one.
+    /// The fit of the weights; `null` if they are one.
     pub weights: Option<FittedWeights>,
-    /// How those of the grown balls were fitted; `null` where there are none.
+    /// The fit of the weights of the grown balls; `null` if there are none.
     pub skin_weights: Option<FittedWeights>,
 }
 
@@ -192,15 +192,12 @@ pub struct MeshPair {
 /// The default offset: 2 (`eps_A` + `eps_B`), but no more than twice the smaller feature size.
 ///
 /// The former is the least clearance that the sampling resolves. The latter keeps the skin from filling the features.
-pub fn default_offset(epsilons: [f64; 2], features: [f64; 2]) -> f64 {
+fn default_offset(epsilons: [f64; 2], features: [f64; 2]) -> f64 {
     let sampled = 2.0 * (epsilons[0] + epsilons[1]);
     sampled.min(2.0 * features[0].min(features[1]))
 }
 
 /// Samples two parts for docking.
-///
-/// # Errors
-/// [`MeshSceneError`].
 pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair, MeshSceneError> {
     let extents = shapes.map(|shape| match shape {
         Shape::Solid(solid) => {
@@ -243,12 +240,11 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
         .offset
         .unwrap_or_else(|| default_offset(epsilons, features));
     let (low, high) = (resolved, 0.25 * extents[0].min(extents[1]));
-    // An offset that --rerun gives back may differ from the bound by a rounding.
+    // An offset of --rerun may differ from the bound by a rounding.
     if !(low * (1.0 - 1e-9)..=high).contains(&offset) {
-        let fault = if offset < low {
-            "finer than the parts are sampled"
-        } else {
-            "too coarse for the parts"
+        let fault = match offset < low {
+            true => "finer than the parts are sampled",
+            false => "too coarse for the parts",
         };
         let message = format!(
             "an offset of {offset:.3e} is {fault}: it must lie between {low:.3e}, eps of both parts, and {high:.3e}, a \
@@ -280,9 +276,9 @@ struct Measured<'a> {
     field: Option<DepthField>,
     /// Nodes strictly inside.
     inside: usize,
-    /// Length of the grid's unit in that of the file.
+    /// Length of the grid's unit, in the file's.
     unit: f64,
-    /// Of balls, where the grid's origin is in the file.
+    /// The grid's origin in a file of balls.
     middle: [f64; 3],
     feature_size: f64,
 }
@@ -355,19 +351,18 @@ impl<'a> Measured<'a> {
                 fitted,
             }),
             _ => {
+                let message =
+                    "the part is balls already, which this sampler cannot take as they are";
                 return Err(of_part(
                     index,
-                    "the part is balls already, which this sampler cannot take as they are",
+                    message,
                     "dock files of balls with --sampler bi",
                 ));
             }
         };
         let radii = found.balls.iter().map(|ball| ball.radius * self.unit);
-        let (smallest_radius, radius) = radii
-            .clone()
-            .fold((f64::INFINITY, 0.0f64), |(low, high), radius| {
-                (low.min(radius), high.max(radius))
-            });
+        let smallest_radius = radii.clone().fold(f64::INFINITY, f64::min);
+        let radius = radii.clone().fold(0.0, f64::max);
         let outward = |ball: &Ball| match self.shape {
             Shape::Solid(solid) => solid.frame().outward(ball.center),
             Shape::Balls(_) => [0, 1, 2].map(|axis| ball.center[axis] + self.middle[axis]),
@@ -404,7 +399,7 @@ impl MeshPair {
         ANGSTROM * self.offset
     }
 
-    /// Depth of the skin where the kernel is the product kernel; `None`: it is the cone.
+    /// Depth of the skin of the product kernel; `None` for the cone.
     pub fn skin(&self) -> Option<f64> {
         Some(self.sampler.skin()? * self.offset)
     }

@@ -47,13 +47,10 @@ pub trait Rule<T> {
     /// The value of a text. Files are looked for from `folder`.
     ///
     /// # Errors
-    /// What the value must be; or the fault of a file, which the error then names.
+    /// The demand on the value; or the fault of a file, which the error then names.
     fn read(&self, text: &str, folder: &Path) -> Result<T, Error>;
 
-    /// Refuses a value that no text could give.
-    ///
-    /// # Errors
-    /// What the value must be.
+    /// Refuses a value that no text could give, with the demand on it.
     fn check(&self, _value: &T) -> Result<(), Error> {
         Ok(())
     }
@@ -165,17 +162,11 @@ impl Definition {
     }
 
     /// Sets the option from text. Files are looked for from `folder`.
-    ///
-    /// # Errors
-    /// [`Error`] with what the value must be, or the fault of the named file.
     pub fn read(&self, options: &mut DockOptions, text: &str, folder: &Path) -> Result<(), Error> {
         (self.access.read)(options, text, folder)
     }
 
-    /// As [`Self::read`], with an error for a command line.
-    ///
-    /// # Errors
-    /// As those of [`Self::read`]; they name the option.
+    /// As [`Self::read`], with errors for a command line, which name the option.
     pub fn set(&self, options: &mut DockOptions, text: &str) -> Result<(), Error> {
         let read = self.read(options, text, Path::new(""));
         read.map_err(|error| match error.file() {
@@ -185,9 +176,6 @@ impl Definition {
     }
 
     /// Refuses a value out of range.
-    ///
-    /// # Errors
-    /// [`Error`] that names option and value.
     pub(super) fn check(&self, options: &DockOptions) -> Result<(), Error> {
         (self.access.check)(options).map_err(|error| {
             let value = self.text(options).unwrap_or_default();
@@ -222,14 +210,9 @@ impl Definition {
 
 /// Paragraphs of a doc comment, from its lines.
 pub(super) fn paragraphs(lines: &[&str]) -> Vec<String> {
-    let parts = lines.split(|line| line.trim().is_empty());
-    let joined = parts.map(|part| {
-        part.iter()
-            .map(|line| line.trim())
-            .collect::<Vec<_>>()
-            .join(" ")
-    });
-    joined.collect()
+    let lines: Vec<&str> = lines.iter().map(|line| line.trim()).collect();
+    let parts = lines.split(|line| line.is_empty());
+    parts.map(|part| part.join(" ")).collect()
 }
 
 /// Defines the struct of a subject: `NAME as FIELD, "HEADING", SCOPE { OPTIONS }`. FIELD is its field in
@@ -335,9 +318,7 @@ impl<T: DeserializeOwned + Serialize> Rule<T> for Choice {
         // serde's sentence is "unknown variant `x`, expected `a` or `b`".
         Word.read(text, folder).map_err(|error: Error| {
             let text = error.to_string();
-            let names = text
-                .split_once("expected ")
-                .map_or(text.as_str(), |(_, names)| names);
+            let names = text.rsplit("expected ").next().unwrap_or_default();
             Error::input(format!("it must be {}", names.replace('`', "")))
         })
     }
@@ -372,16 +353,16 @@ impl<T: FromStr<Err: Display> + Display> Rule<T> for Parsed {
     }
 }
 
-/// As [`Parsed`], of a value that may begin with a minus.
+/// As [`Word`], of a value that may begin with a minus.
 pub(super) struct Signed;
 
-impl<T: FromStr<Err: Display> + Display> Rule<T> for Signed {
+impl<T: DeserializeOwned + Serialize> Rule<T> for Signed {
     fn read(&self, text: &str, folder: &Path) -> Result<T, Error> {
-        Parsed.read(text, folder)
+        Word.read(text, folder)
     }
 
     fn text(&self, value: &T) -> Option<String> {
-        Parsed.text(value)
+        Word.text(value)
     }
 
     fn form(&self) -> Form {

@@ -50,18 +50,12 @@ impl DockOptions {
 
     /// Sets the options of a text in TOML; returns them. Files that it names are looked for from the folder of `path`,
     /// which errors name.
-    ///
-    /// # Errors
-    /// As those of [`Self::read_file`].
     pub fn read_toml(&mut self, text: &str, path: &Path) -> Result<Vec<GivenOption>, Error> {
         self.read_entries(text, path, path.parent().unwrap_or(Path::new("")))
     }
 
     /// Sets the option of a line such as `terms.contact_weight=1.5`; returns it. A file that it names is looked for from
-    /// the working directory.
-    ///
-    /// # Errors
-    /// As those of [`Self::read_file`]; they name the line as a file.
+    /// the working directory. Errors name the line as a file.
     pub fn read_line(&mut self, line: &str) -> Result<Vec<GivenOption>, Error> {
         let read = self.read_entries(line, Path::new(line), Path::new(""));
         // The line of a file that the option names stays.
@@ -86,33 +80,27 @@ impl DockOptions {
             })?;
             let mut given = Vec::new();
             for (subject, table) in document.into_inner() {
-                let DeValue::Table(table) = table.into_inner() else {
+                let name = subject.get_ref().as_ref();
+                let is_subject = definitions().iter().any(|one| one.subject() == name);
+                let (DeValue::Table(table), true) = (table.into_inner(), is_subject) else {
                     return Err(no_table(&subject));
                 };
-                if !definitions()
-                    .iter()
-                    .any(|one| one.subject() == subject.get_ref().as_ref())
-                {
-                    return Err(no_table(&subject));
-                }
                 for (name, value) in table {
                     given.push(self.read_entry(&subject, &name, value, folder)?);
                 }
             }
             Ok(given)
         };
-        read().map_err(|Fault { span, error }| match (error.file(), span) {
-            // The fault is in a file that the option names.
-            (Some(_), span) => {
-                let remedy = error.remedy().unwrap_or_default();
-                let line = span.map(|span| format!(", line {}", line_at(text, span.start)));
-                let line = line.unwrap_or_default();
-                let named = format!("{remedy}; {}{line} names the file", path.display());
-                error.help(named)
+        read().map_err(|Fault { span, error }| {
+            let line = span.map(|span| line_at(text, span.start));
+            if error.file().is_none() {
+                return error.at(path).on_line(line);
             }
-            (None, span) => error
-                .at(path)
-                .on_line(span.map(|span| line_at(text, span.start))),
+            // The fault is in a file that the option names.
+            let remedy = error.remedy().unwrap_or_default();
+            let line = line.map_or_else(String::new, |line| format!(", line {line}"));
+            let named = format!("{remedy}; {}{line} names the file", path.display());
+            error.help(named)
         })
     }
 
@@ -124,9 +112,8 @@ impl DockOptions {
         value: Spanned<DeValue<'_>>,
         folder: &Path,
     ) -> Result<GivenOption, Fault> {
-        let is_named = |one: &&Definition| {
-            one.subject() == subject.get_ref().as_ref() && one.name() == name.get_ref().as_ref()
-        };
+        let path = (subject.get_ref().as_ref(), name.get_ref().as_ref());
+        let is_named = |one: &&Definition| (one.subject(), one.name()) == path;
         let Some(option) = definitions().iter().find(is_named) else {
             return Err(no_option(name, subject.get_ref()));
         };
@@ -208,10 +195,10 @@ fn no_option(found: &Spanned<DeString<'_>>, subject: &str) -> Fault {
 fn text_of(option: &Definition, value: &DeValue<'_>) -> Result<String, Error> {
     match (option.form(), value) {
         (Form::Flag, DeValue::Boolean(truth)) => Ok(truth.to_string()),
-        (Form::Flag, _) => Err(Error::input(format!(
-            "{} must be true or false",
-            option.name()
-        ))),
+        (Form::Flag, _) => {
+            let message = format!("{} must be true or false", option.name());
+            Err(Error::input(message))
+        }
         (Form::List, DeValue::Array(values)) => {
             let texts = values.iter().map(|value| text_of(option, value.get_ref()));
             Ok(texts.collect::<Result<Vec<_>, _>>()?.join(","))
@@ -222,10 +209,10 @@ fn text_of(option: &Definition, value: &DeValue<'_>) -> Result<String, Error> {
             .map(|number| number.to_string())
             .map_err(Error::input),
         (_, DeValue::Float(number)) => Ok(number.as_str().to_owned()),
-        _ => Err(Error::input(format!(
-            "{} must be text or a number",
-            option.name()
-        ))),
+        _ => {
+            let message = format!("{} must be text or a number", option.name());
+            Err(Error::input(message))
+        }
     }
 }
 

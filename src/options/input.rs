@@ -50,7 +50,7 @@ options! {
 impl InputOptions {
     /// The options as the reader takes them.
     pub fn reading(&self) -> ReadOptions {
-        // In one order, so that runs that leave out the same residues are the same run.
+        // Sorted: the order has no effect on a run.
         let names: BTreeSet<String> = self.drop_residue.iter().cloned().collect();
         ReadOptions {
             waters: self.waters,

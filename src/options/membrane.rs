@@ -1,19 +1,15 @@
-//! A membrane in which one molecule lies, and which the other is to stay out of.
-
-use std::fmt;
-use std::str::FromStr;
+//! A membrane around one molecule, which the other is to stay out of.
 
 use knotdock_scoring::terms::pose::Membrane;
+use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
 use serde::{Deserialize, Serialize};
 
-use knotdock_structures::Error;
-
-/// Where a membrane lies: between two planes across the z axis of one molecule's file.
+/// Place of a membrane: between two planes across the z axis of one molecule's file.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum MembraneChoice {
-    /// Between the planes that a molecule's file marks: that of the receptor (0) or of the ligand (1).
+    /// Between the planes that the file of the receptor (0) or of the ligand (1) marks.
     Marked(usize),
     /// Between two z of the receptor's file, in Å, the lower one first.
     Between(f64, f64),
@@ -22,19 +18,15 @@ pub enum MembraneChoice {
 /// Names of the sides.
 const SIDES: [&str; 2] = ["receptor", "ligand"];
 
-/// A text that says of no membrane where it lies.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error(
-    "receptor or ligand, whose file has the planes (OPM, PPM), or the lowest and highest z in Å of the receptor's \
-     file, such as -15,15"
-)]
-pub struct MembraneError;
+/// The forms of its text.
+const FORMS: &str = "receptor or ligand, whose file has the planes (OPM, PPM), or the lowest and highest z in Å of the \
+    receptor's file, such as -15,15";
 
 impl MembraneChoice {
     /// The membrane of two molecules.
     ///
     /// # Errors
-    /// [`Error`] where the file that should mark its planes does not.
+    /// [`Error`] if the file that should mark its planes does not.
     pub(crate) fn of(self, molecules: [&Molecule; 2]) -> Result<Membrane, Error> {
         match self {
             Self::Between(low, high) => Ok(Membrane { side: 0, low, high }),
@@ -53,10 +45,10 @@ impl MembraneChoice {
     }
 }
 
-impl FromStr for MembraneChoice {
-    type Err = MembraneError;
+impl TryFrom<String> for MembraneChoice {
+    type Error = &'static str;
 
-    fn from_str(text: &str) -> Result<Self, MembraneError> {
+    fn try_from(text: String) -> Result<Self, Self::Error> {
         if let Some(side) = SIDES.iter().position(|side| *side == text) {
             return Ok(Self::Marked(side));
         }
@@ -64,34 +56,20 @@ impl FromStr for MembraneChoice {
             let number = text.trim().parse::<f64>().ok();
             number.filter(|z| z.abs() <= 1e6)
         };
-        let (low, high) = text.split_once(',').ok_or(MembraneError)?;
+        let (low, high) = text.split_once(',').ok_or(FORMS)?;
         match (z(low), z(high)) {
             (Some(low), Some(high)) if low < high => Ok(Self::Between(low, high)),
-            _ => Err(MembraneError),
+            _ => Err(FORMS),
         }
-    }
-}
-
-impl fmt::Display for MembraneChoice {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Marked(side) => f.write_str(SIDES[*side]),
-            Self::Between(low, high) => write!(f, "{low},{high}"),
-        }
-    }
-}
-
-impl TryFrom<String> for MembraneChoice {
-    type Error = MembraneError;
-
-    fn try_from(text: String) -> Result<Self, MembraneError> {
-        text.parse()
     }
 }
 
 impl From<MembraneChoice> for String {
     fn from(choice: MembraneChoice) -> Self {
-        choice.to_string()
+        match choice {
+            MembraneChoice::Marked(side) => SIDES[side].to_owned(),
+            MembraneChoice::Between(low, high) => format!("{low},{high}"),
+        }
     }
 }
 
@@ -102,12 +80,14 @@ mod tests {
     #[test]
     fn membranes_are_read_as_they_are_written() {
         for text in ["receptor", "ligand", "-15.5,15", "0,30"] {
-            let choice: MembraneChoice = text.parse().unwrap();
-            assert_eq!(choice.to_string(), text);
+            let choice = MembraneChoice::try_from(text.to_owned()).unwrap();
+            assert_eq!(String::from(choice), text);
         }
-        assert_eq!("-1, 2".parse(), Ok(MembraneChoice::Between(-1.0, 2.0)));
+        let between = MembraneChoice::Between(-1.0, 2.0);
+        assert_eq!("-1, 2".to_owned().try_into(), Ok(between));
         for text in ["", "both", "15,-15", "3,3", "3", "nan,3", "0,inf", "1,2,3"] {
-            assert_eq!(text.parse::<MembraneChoice>(), Err(MembraneError), "{text}");
+            let read = MembraneChoice::try_from(text.to_owned());
+            assert_eq!(read, Err(FORMS), "{text}");
         }
     }
 }

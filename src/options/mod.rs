@@ -22,7 +22,6 @@ mod input;
 mod kernel;
 mod machine;
 pub mod membrane;
-mod output;
 mod preset;
 mod ranking;
 mod restraints;
@@ -37,10 +36,8 @@ pub use effect_choice::EffectChoice;
 pub use input::InputOptions;
 pub use kernel::{KernelOptions, PASS_RATIO};
 pub use machine::MachineOptions;
-pub use output::OutputOptions;
 pub use preset::Preset;
-pub use ranking::{RankingOptions, SharpChoice};
-pub(crate) use restraints::PEPTIDASE_WEIGHT;
+pub use ranking::{OutputOptions, RankingOptions, SharpChoice};
 pub use restraints::{AntibodySurface, RestraintOptions};
 pub use sampling::{MAX_PER_AXIS, SampleGrid, SamplingOptions};
 pub use search::{AXES, AXES_ACROSS, EngineChoice, Precision, REFINED_BY_SHAPE, SearchOptions};
@@ -76,11 +73,11 @@ pub struct DockOptions {
     /// Threads and memory, which change no result and are recorded elsewhere.
     #[serde(skip)]
     pub machine: MachineOptions,
-    /// Where a run within a time stopped: no option, but a fact that a run which repeats it needs. `None`: nowhere.
+    /// Stop of a run within a time: no option, but needed to repeat the run. `None`: it did not stop early.
     pub stopped: Option<Stopped>,
 }
 
-/// Where a run within a time stopped.
+/// Stop of a run within a time.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
 pub struct Stopped {
@@ -139,18 +136,15 @@ impl DockOptions {
     /// result.
     pub fn given(&self) -> impl Iterator<Item = &'static Definition> {
         let default = Self::default();
-        let all = definitions().iter();
-        let of_run = all.filter(|option| option.subject() != "machine");
+        let of_run = definitions()
+            .iter()
+            .filter(|option| option.subject() != "machine");
         of_run.filter(move |option| !option.is_same(self, &default))
     }
 
     /// The first option that differs from its default and has no effect on meshes, or on molecules.
     pub fn without_effect(&self, are_meshes: bool) -> Option<&'static Definition> {
-        let other = if are_meshes {
-            Scope::Molecules
-        } else {
-            Scope::Meshes
-        };
+        let other = [Scope::Meshes, Scope::Molecules][usize::from(are_meshes)];
         self.given().find(|option| option.scope() == other)
     }
 }

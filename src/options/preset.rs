@@ -14,7 +14,7 @@ use super::file::GivenOption;
 pub struct Preset {
     /// Its name.
     pub name: &'static str,
-    /// What it is for.
+    /// Its purpose.
     pub about: &'static str,
     /// Its file of options.
     pub text: &'static str,
@@ -51,9 +51,6 @@ impl Preset {
     }
 
     /// Sets the options of the preset; returns them.
-    ///
-    /// # Errors
-    /// [`Error`] if its file cannot be read, which a test rules out.
     pub fn apply(self, options: &mut DockOptions) -> Result<Vec<GivenOption>, Error> {
         options.read_toml(self.text, Path::new("preset"))
     }

@@ -1,4 +1,4 @@
-//! Options on ranking: how poses become rows.
+//! Options on ranking, how poses become rows, and on the files of a run.
 
 use serde::{Deserialize, Serialize};
 
@@ -24,7 +24,7 @@ options! {
     }
 }
 
-/// What records hold of runs that are older than the option.
+/// Value of records that are older than the option.
 fn before_sharp_fits() -> SharpChoice {
     SharpChoice::Off
 }
@@ -33,11 +33,24 @@ fn before_sharp_fits() -> SharpChoice {
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SharpChoice {
-    /// They rank where one stands out.
+    /// They rank if one stands out.
     #[default]
     Auto,
     /// They always rank.
     On,
-    /// They are not looked for.
+    /// None are made.
     Off,
+}
+
+options! {
+    /// What a run writes.
+    OutputOptions as output, "Output", Both {
+        /// Complexes to write to top/.
+        write_top: usize = 10, "COUNT", NOT_NEGATIVE;
+        /// Add the diagnostic columns to poses.csv.
+        diagnostics: bool = false, "", Flag;
+        /// Write no report.html.
+        #[serde(default)]
+        no_report: bool = false, "", Flag;
+    }
 }

@@ -6,7 +6,7 @@ use knotdock_structures::Error;
 use knotdock_structures::molecule::ResidueSelection;
 use serde::{Deserialize, Serialize};
 
-use super::definition::{Choice, Content, Form, Optional, Parsed, Rule, Signed, Word, options};
+use super::definition::{Choice, Content, Form, Optional, Rule, Signed, Word, options};
 use super::values::Range;
 use crate::options::membrane::MembraneChoice;
 use crate::plain_path::plain_path;
@@ -15,7 +15,7 @@ use crate::restraints::{Crosslink, RequiredCount, RestraintFile, TblBounds};
 
 /// Score of a pose that touches all catalytic residues: two units of log-odds by training pairs (docs/research/effects.md,
 /// "Active sites").
-pub(crate) const PEPTIDASE_WEIGHT: f64 = 500.0;
+const PEPTIDASE_WEIGHT: f64 = 500.0;
 
 options! {
     /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
@@ -51,7 +51,7 @@ options! {
         /// How many of the restraints a pose has to satisfy: a number, or a share such as 60%.
         ///
         /// Ask for fewer than all if some may be false.
-        restraints_need: RequiredCount = RequiredCount::default(), "COUNT|SHARE", Parsed;
+        restraints_need: RequiredCount = RequiredCount::default(), "COUNT|SHARE", Word;
         /// Upper bounds of a .tbl: widened for the hydrogens that they count, or as written.
         ///
         /// HADDOCK sums over hydrogens, which are dropped here. widened: 2 Å is 2.78 Å between heavy atoms. Selections
@@ -60,7 +60,7 @@ options! {
         /// Reagent of cross-links: DSS or BS3.
         ///
         /// Rows of --restraints without an upper bound get that of the reagent, between CA atoms. DSS and BS3: 30 Å.
-        crosslink: Option<Crosslink> = None, "REAGENT", Optional(Parsed);
+        crosslink: Option<Crosslink> = None, "REAGENT", Optional(Word);
         /// How likely each residue of the receptor is in the interface: a table, or bfactor.
         ///
         /// The columns of the table are chain, residue and probability, as a predictor gives them. bfactor reads the B
@@ -115,11 +115,11 @@ impl Rule<PredictionSource> for Predictions {
     }
 }
 
-/// What part of an antibody may touch.
+/// Part of an antibody that may touch.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum AntibodySurface {
-    /// Its CDRs and what lies about them.
+    /// Its CDRs and their surroundings.
     #[default]
     Cdrs,
     /// All of it.

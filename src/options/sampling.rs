@@ -22,7 +22,7 @@ options! {
         /// How a mesh becomes balls: lattice or bi [default: lattice].
         ///
         /// lattice: balls of one radius. bi: the balls of Behandish and Ilieş' Algorithm 1, which count by volume.
-        sampler: Option<Sampler> = None, "lattice|bi", Optional(Parsed);
+        sampler: Option<Sampler> = None, "lattice|bi", Optional(Choice);
     }
 }
 
@@ -71,10 +71,10 @@ impl FromStr for SampleGrid {
     fn from_str(text: &str) -> Result<Self, String> {
         let nodes = match text.split_once('^') {
             Some((base, power)) => {
-                match (base.trim().parse::<u64>(), power.trim().parse::<u32>()) {
-                    (Ok(base), Ok(power)) => base.checked_pow(power),
-                    _ => None,
-                }
+                let (base, power) = (base.trim().parse::<u64>(), power.trim().parse::<u32>());
+                base.ok()
+                    .zip(power.ok())
+                    .and_then(|(base, power)| base.checked_pow(power))
             }
             None => text.parse::<u64>().ok(),
         };

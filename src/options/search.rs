@@ -60,8 +60,7 @@ pub const AXES: usize = 900;
 /// Axes of two rings by default: of D2 at steps of one degree, of Dn of 2 / n degrees.
 pub const AXES_ACROSS: usize = 90;
 
-/// Floating-point type of the fast path: spectra, grids and the search. What is reported is in double precision
-/// whatever it is.
+/// Floating-point type of the fast path: spectra, grids and the search. Reports are always in double precision.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Precision {
@@ -91,7 +90,7 @@ impl Precision {
     }
 }
 
-/// What the correlations are computed on. All else, exact sums and refinement among it, is computed on the CPU.
+/// Device of the correlations. All else, such as exact sums and refinement, is computed on the CPU.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum EngineChoice {

@@ -8,7 +8,7 @@ use super::{
     option_named,
 };
 
-/// The refusal of an option by name; `bound` states what it must be.
+/// The refusal of an option by name; `bound` states the demand on it.
 pub(crate) fn refused(name: &str, value: &str, bound: &str) -> Error {
     let bound = format!("it must be {bound}");
     match option_named(name) {
@@ -17,7 +17,7 @@ pub(crate) fn refused(name: &str, value: &str, bound: &str) -> Error {
     }
 }
 
-/// The refusal of an option that has no part in a run; `context` states why.
+/// The refusal of an option without effect in a run; `context` states why.
 pub(crate) fn left_out(name: &str, value: &str, context: &str) -> Error {
     refused(name, value, &format!("left out {context}")).help("leave the option out")
 }
@@ -61,10 +61,7 @@ impl DockOptions {
             .try_for_each(|option| option.check(self))
     }
 
-    /// Refuses what no run can do: values out of range, and options that do not go together.
-    ///
-    /// # Errors
-    /// [`Error`] for the first.
+    /// Refuses values out of range, and options that do not go together.
     pub fn validate(&self) -> Result<(), Error> {
         self.check_ranges()?;
         let SearchOptions {
@@ -92,11 +89,8 @@ impl DockOptions {
         }
         let share = self.search.fine_share;
         if fine_rotations.is_none() && share != SearchOptions::default().fine_share {
-            return Err(left_out(
-                "fine_share",
-                &share.to_string(),
-                "without --fine-rotations",
-            ));
+            let context = "without --fine-rotations";
+            return Err(left_out("fine_share", &share.to_string(), context));
         }
         let tolerance = self.kernel.tolerance;
         if tolerance < precision.finest_tolerance() {
@@ -118,25 +112,20 @@ impl DockOptions {
         option.text(self).unwrap_or_else(|| "left out".to_owned())
     }
 
-    /// Refuses what distance restraints and membranes have no part in.
+    /// Refuses options that do not go with distance restraints and membranes.
     fn check_restraints(&self) -> Result<(), Error> {
         let (restraints, default) = (&self.restraints, Self::default());
         let file = restraints.restraints.as_ref();
+        let path = file.map(|file| file.path.display().to_string());
         let of_search = [
-            (
-                "restraints",
-                file.map(|file| file.path.display().to_string()),
-            ),
-            ("membrane", restraints.membrane.map(|of| of.to_string())),
+            ("restraints", path),
+            ("membrane", restraints.membrane.map(String::from)),
         ];
         for (name, value) in of_search {
             let Some(value) = value else { continue };
             if let Some(symmetry) = self.search.symmetry {
-                return Err(left_out(
-                    name,
-                    &value,
-                    &format!("with --symmetry {symmetry}"),
-                ));
+                let context = format!("with --symmetry {symmetry}");
+                return Err(left_out(name, &value, &context));
             }
             if self.search.engine != EngineChoice::Cpu {
                 let bound = format!("cpu with --{name}");
@@ -154,7 +143,7 @@ impl DockOptions {
         }
     }
 
-    /// Refuses what a search for rings has no part for.
+    /// Refuses options that do not go with a search for rings.
     fn check_rings(&self) -> Result<(), Error> {
         let Some(symmetry) = self.search.symmetry else {
             return Ok(());
@@ -172,22 +161,15 @@ impl DockOptions {
             return Err(refused("engine", &value, &format!("cpu {with}")));
         }
         // A ring's poses score as their inverses do.
-        let restraints = &self.restraints;
-        let differs = [
-            (
-                "block_ligand",
-                restraints.block_receptor != restraints.block_ligand,
-            ),
-            (
-                "active_ligand",
-                restraints.active_receptor != restraints.active_ligand,
-            ),
+        let of = &self.restraints;
+        for (name, differs) in [
+            ("block_ligand", of.block_receptor != of.block_ligand),
+            ("active_ligand", of.active_receptor != of.active_ligand),
             (
                 "interface_ligand",
-                restraints.interface_receptor != restraints.interface_ligand,
+                of.interface_receptor != of.interface_ligand,
             ),
-        ];
-        for (name, differs) in differs {
+        ] {
             if let Some(option) = option_named(name).filter(|_| differs) {
                 let bound = format!("the receptor's {with}");
                 return Err(refused(name, &self.written(option), &bound));

@@ -49,11 +49,7 @@ impl Range {
     }
 
     fn contains(self, value: f64) -> bool {
-        let is_above = if self.is_open {
-            value > self.low
-        } else {
-            value >= self.low
-        };
+        let is_above = value > self.low || (!self.is_open && value == self.low);
         is_above && value <= self.high
     }
 }
@@ -115,9 +111,8 @@ impl<N: Number> Rule<N> for Range {
     fn read(&self, text: &str, _: &Path) -> Result<N, Error> {
         let value: Option<N> = text.parse().ok();
         let value = value.filter(|value| self.contains(value.float()));
-        value
-            .map(N::plain)
-            .ok_or_else(|| Error::input(format!("it must be {} {self}", N::KIND)))
+        let refused = || Error::input(format!("it must be {} {self}", N::KIND));
+        value.map(N::plain).ok_or_else(refused)
     }
 
     fn check(&self, value: &N) -> Result<(), Error> {
@@ -175,7 +170,7 @@ impl Rule<usize> for Rotations {
 /// The field's count of rotations at an angle of 15 degrees.
 const ROTATIONS_AT_15_DEGREES: f64 = 3600.0;
 
-/// The number of rotations that the field takes for an angle in degrees: N = round(3600 (15/D)^3). `None` unless the
+/// The number of rotations of the field for an angle in degrees: N = round(3600 (15/D)^3). `None` unless the
 /// angle is at least 0.1 (12 thousand million rotations) and at most 180.
 pub fn rotations_of_angle(angle: f64) -> Option<usize> {
     let rotations = (ROTATIONS_AT_15_DEGREES * (15.0 / angle).powi(3)).round();
@@ -227,17 +222,12 @@ impl Rule<u64> for Size {
 pub struct AllOr(pub Option<usize>);
 
 /// A whole number above zero, or `all`.
-///
-/// # Errors
-/// What the text must be.
 pub fn all_or_at_least_one(text: &str) -> Result<AllOr, Error> {
     if text == "all" {
         return Ok(AllOr(None));
     }
-    let count = in_range(AT_LEAST_ONE)(text);
-    count
-        .map(|count| AllOr(Some(count)))
-        .map_err(|error| Error::input(format!("{error}, or `all`")))
+    let count = in_range(AT_LEAST_ONE)(text).map(|count| AllOr(Some(count)));
+    count.map_err(|error| Error::input(format!("{error}, or `all`")))
 }
 
 /// A number and the unit after it, which begins at the first character for which `is_unit` holds.
@@ -248,9 +238,6 @@ fn split_unit(text: &str, is_unit: impl Fn(char) -> bool) -> (&str, &str) {
 }
 
 /// A time in seconds, from text such as `5`, `5s`, `2min` or `1h`; a bare number is seconds, and a run says so.
-///
-/// # Errors
-/// What is wrong with the text.
 pub fn duration(text: &str) -> Result<f64, String> {
     let (digits, unit) = split_unit(text, |c| c.is_ascii_alphabetic() && c != 'e');
     let unit = match unit {
@@ -274,9 +261,6 @@ pub fn duration(text: &str) -> Result<f64, String> {
 const LONGEST: f64 = 1e9;
 
 /// A size in bytes from text such as `800000000`, `1.5G` (1000^3) or `512MiB` (1024^2).
-///
-/// # Errors
-/// What is wrong with the text.
 pub fn size(text: &str) -> Result<u64, String> {
     let (digits, unit) = split_unit(text, |c| !c.is_ascii_digit() && c != '.');
     let scale = match unit.to_ascii_lowercase().as_str() {

@@ -14,8 +14,7 @@
 //! # Conventions
 //!
 //! - Every file is written whole in a staging folder, to the device, and then takes its place at one stroke. A run that
-//!   fails or is killed leaves no part of a file where a whole one is expected. See [`files::whole_file`] and
-//!   [`files::staging`].
+//!   fails or is killed leaves no partial file in place of a whole one. See [`files::whole_file`] and [`files::staging`].
 //! - Coordinates are in Å, of meshes in the unit of their files. A pose carries the ligand from its own file's frame to
 //!   the receptor's.
 //! - Numbers are printed in the shortest digits that read back to the same f64; a value that does not exist is an empty

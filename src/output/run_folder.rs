@@ -13,16 +13,18 @@ use crate::dock::outcome::DockOutcome;
 use crate::dock::plan::DockPlan;
 use crate::options::DockOptions;
 use crate::output::files::assemblies::{Surface, write_assemblies};
-use crate::output::files::complexes::write_complexes;
+use crate::output::files::complexes::{WrittenBodies, write_complexes};
 use crate::output::files::staging::Stage;
-use crate::output::files::viewers::{CHIMERAX, PYMOL, ViewedComplex, write_chimerax, write_pymol};
+use crate::output::files::viewers::{
+    CHIMERAX, PYMOL, ViewedComplex, chimerax_script, pymol_script,
+};
 use crate::output::files::whole_file::to_json;
 use crate::output::records::manifest::{
-    Chosen, EffectTime, Inputs, Machine, Manifest, ManifestParts, Results, Timing,
+    Chosen, EffectTime, ErrorRecord, Inputs, Machine, Manifest, Results, SCHEMA, Timing,
 };
+use crate::output::records::program::Program;
 use crate::output::run_contacts::RunContacts;
 use crate::output::tables::fields::Column;
-use crate::output::tables::interface_shares::{INTERFACE, write_shares};
 use crate::output::tables::poses::PoseRow;
 use crate::output::tables::restraints;
 use crate::output::tables::run_table::{RunTable, pose_rows};
@@ -50,7 +52,7 @@ impl Clock {
         self.monotonic.elapsed().as_secs_f64()
     }
 
-    /// The time that is so many seconds after the start; `None` for one that clocks do not reach.
+    /// The time that many seconds after the start; `None` for one that clocks do not reach.
     pub fn after(&self, seconds: f64) -> Option<Instant> {
         let time = std::time::Duration::try_from_secs_f64(seconds).ok()?;
         self.monotonic.checked_add(time)
@@ -65,7 +67,7 @@ impl Clock {
                 .map_or(0, |since| since.as_secs()),
             wall_seconds: self.seconds(),
             stages: outcome.timing.clone(),
-            effects: EffectTime::of(&outcome.effects),
+            effects: outcome.effects.iter().map(EffectTime::from).collect(),
             peak_memory_bytes: process::peak(),
         }
     }
@@ -99,21 +101,9 @@ pub enum Bodies<'a> {
     Solids([Surface<'a>; 2]),
 }
 
-/// Bodies as written.
-#[derive(Clone, Debug)]
-pub struct WrittenBodies {
-    /// Names of the files, in the order of the rows.
-    pub names: Vec<String>,
-    /// Chain names in the complexes; `None` for solids.
-    pub chains: Option<ChainMap>,
-}
-
 impl Bodies<'_> {
     /// Writes the bodies in the poses of `rows` into a folder, for rings all copies; molecules in a format, if one is
     /// given.
-    ///
-    /// # Errors
-    /// [`Error`] for a folder or file that cannot be written.
     pub fn write(
         self,
         rows: &[PoseRow],
@@ -122,11 +112,7 @@ impl Bodies<'_> {
     ) -> Result<WrittenBodies, Error> {
         match self {
             Self::Molecules(molecules) => {
-                let written = write_complexes(molecules, arrangement, rows, "", (folder, format))?;
-                Ok(WrittenBodies {
-                    names: written.names,
-                    chains: Some(written.chains),
-                })
+                write_complexes(molecules, arrangement, rows, "", (folder, format))
             }
             Self::Solids([receptor, ligand]) => Ok(WrittenBodies {
                 names: write_assemblies(receptor, ligand, rows, folder)?,
@@ -177,9 +163,6 @@ impl<'a> FinishedRun<'a> {
     }
 
     /// Writes tables, complexes and record into the staging folder of a run.
-    ///
-    /// # Errors
-    /// [`Error`] for a file that cannot be written.
     pub fn stage(&self, staging: &Stage) -> Result<StagedRun, Error> {
         let Self {
             options,
@@ -206,9 +189,7 @@ impl<'a> FinishedRun<'a> {
             write_scripts(staging, &viewed)?;
         }
         if let Some(contacts) = self.contacts {
-            let [receptor, ligand] = contacts.shares();
-            let sides = [("receptor", &receptor[..]), ("ligand", &ligand[..])];
-            staging.write(INTERFACE, |file| write_shares(sides, file))?;
+            staging.write("interface.csv", |file| contacts.write_shares(file))?;
         }
         let record = self.record(staging.checksums()?, written.chains.as_ref())?;
         staging.write("run.json", |file| to_json(file, &record))?;
@@ -219,20 +200,28 @@ impl<'a> FinishedRun<'a> {
     }
 
     /// `run.json`, with the checksums of the other files by their paths and the chain names in the complexes.
-    ///
-    /// # Errors
-    /// [`Error`] if a part cannot be put into JSON, which would be a fault of the program.
     pub fn record(
         &self,
         files: BTreeMap<String, String>,
         chains: Option<&ChainMap>,
     ) -> Result<Value, Error> {
         let (plan, outcome) = (self.plan, self.outcome);
-        let manifest = Manifest::new(ManifestParts {
+        let manifest = Manifest {
+            schema: SCHEMA,
+            program: Program::this(),
             inputs: self.inputs,
             options: self.options,
             plan,
-            outcome,
+            rank: outcome.rank,
+            effects: &outcome.effects,
+            pose_terms: plan.rescoring().acting(),
+            active_site: plan.active_site(),
+            sharp: outcome.sharp,
+            finer_search: outcome.fine,
+            error: ErrorRecord {
+                measured: outcome.error,
+                lifted_axis: outcome.rank_error,
+            },
             results: Results {
                 poses: outcome.poses_kept,
                 clusters: outcome.clusters,
@@ -241,28 +230,27 @@ impl<'a> FinishedRun<'a> {
             },
             files,
             chains,
-            matching: self.matching.clone(),
+            matching: self.matching.as_ref(),
             timing: self.clock.timing(outcome),
             machine: Machine {
                 chosen: self.chosen.cloned(),
                 adapter: outcome.adapter.clone(),
                 ..machine(plan)
             },
-        });
-        manifest
-            .and_then(serde_json::to_value)
-            .map_err(Error::machine)
+        };
+        serde_json::to_value(manifest).map_err(Error::machine)
     }
 }
 
 /// Writes the scripts that show complexes in other programs, if there are any.
-///
-/// # Errors
-/// [`Error`] for a file that cannot be written.
 pub fn write_scripts(staging: &Stage, complexes: &[ViewedComplex]) -> Result<(), Error> {
     if !complexes.is_empty() {
-        staging.write(PYMOL, |file| write_pymol(file, complexes))?;
-        staging.write(CHIMERAX, |file| write_chimerax(file, complexes))?;
+        staging.write(PYMOL, |file| {
+            file.write_all(pymol_script(complexes).as_bytes())
+        })?;
+        staging.write(CHIMERAX, |file| {
+            file.write_all(chimerax_script(complexes).as_bytes())
+        })?;
     }
     Ok(())
 }

@@ -1,4 +1,4 @@
-//! Arrangements: what a run puts together, as far as its options say.
+//! Arrangements: the bodies of a run, as far as its options decide them.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::symmetry::Symmetry;
@@ -19,7 +19,7 @@ impl From<Option<Symmetry>> for Arrangement {
 }
 
 impl Arrangement {
-    /// Whether copies of one molecule are put together.
+    /// Whether its bodies are copies of one molecule.
     pub fn is_ring(self) -> bool {
         matches!(self, Self::Ring(_))
     }
@@ -40,7 +40,7 @@ impl Arrangement {
         }
     }
 
-    /// Poses of the bodies that are placed beside the receptor, the row's own first; `None` where `pose` forms no ring.
+    /// Poses of the bodies that are placed beside the receptor, the row's own first; `None` if `pose` forms no ring.
     pub fn images(self, pose: &Pose) -> Option<Vec<Pose>> {
         match self {
             Self::Pair => Some(vec![*pose]),

@@ -5,15 +5,13 @@
 //! of it that the options alone decide.
 
 pub mod arrangement;
-pub mod axes;
-pub mod equivalents;
-pub mod refine;
+pub(crate) mod axes;
+pub(crate) mod refine;
 mod ring;
-pub mod rotations;
+pub(crate) mod rotations;
 mod voxel_filter;
 
 use axes::{axes_radius, axis_set};
-use equivalents::Equivalents;
 use knotdock_scoring::engine::{CpuEngine, Plan, PlanError};
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::grid_turn::GridTurn;
@@ -65,25 +63,22 @@ impl PoseSpace {
     /// Rotations that share a transform of the ligand: they differ by turns of the grid.
     pub fn images(&self, plan: &Plan) -> usize {
         match self {
-            // A ring's rotation that is turned forms no ring.
-            Self::Cyclic(_) | Self::Dihedral(..) => 1,
             Self::Free => GridTurn::of(plan.modes()).len(),
+            // A ring's rotation that is turned forms no ring.
+            _ => 1,
         }
     }
 
-    /// The plan on the grid that serves the space best: turned to fit the receptor, where any rotation is searched.
-    ///
-    /// # Errors
-    /// [`PlanError`] where a grid is too large.
+    /// The plan on the grid that serves the space best: turned to fit the receptor, if any rotation is searched.
     pub fn grid_of(&self, plan: Plan, receptor: &Knots) -> Result<Plan, PlanError> {
         match self {
             Self::Free => plan.fitted(receptor),
             // Voxels of rings are found by planes along the file's axes.
-            Self::Cyclic(_) | Self::Dihedral(..) => Ok(plan),
+            _ => Ok(plan),
         }
     }
 
-    /// `count` rotations, of rings one an axis, and `fine` of a finer set, for a plan's grid.
+    /// `count` rotations (one per axis of a ring), and `fine` of a finer set, for a plan's grid.
     pub fn rotations(&self, plan: &Plan, (count, fine): (usize, Option<usize>)) -> RotationSample {
         let images = self.images(plan);
         let of_axes = |symmetry: Symmetry, axes: Vec<Unit<Vector3<f64>>>, name, covering_radius| {
@@ -135,7 +130,7 @@ impl PoseSpace {
         }
     }
 
-    /// The filter of the voxels that count; `None` where all do.
+    /// The filter of the voxels that count; `None` if all do.
     pub(crate) fn voxel_filter(&self, engine: &CpuEngine) -> Option<VoxelFilter> {
         match self {
             Self::Free => None,
@@ -143,7 +138,7 @@ impl PoseSpace {
         }
     }
 
-    /// Whether the grid's poses are in the space as they are. Rings lie between its points.
+    /// Whether the grid's poses are in the space as they are. Rings are between its points.
     pub fn is_on_grid(&self) -> bool {
         matches!(self, Self::Free)
     }
@@ -166,8 +161,9 @@ impl PoseSpace {
         limits: &AscentLimits,
     ) -> RefinedPose {
         let Some(symmetry) = self.symmetry() else {
-            let top = refine::rigid_body_maximum(field, center, pose, limits);
-            let (top, higher) = top;
+            let gradient = |pose: &Pose| field.gradient(pose);
+            let moved = refine::rigid_body(center);
+            let (top, higher) = refine::maximize(*pose, center, limits, gradient, moved);
             return RefinedPose::best_of((printed(pose), score), Some((printed(&top), higher)));
         };
         let start = self.nearest(pose);
@@ -181,13 +177,13 @@ impl PoseSpace {
         }
     }
 
-    /// Exact score between copies that are no neighbours, for each pair of neighbours; `None` where all are.
+    /// Exact score between copies that are no neighbours, for each pair of neighbours; `None` if all are.
     pub fn other_copies(&self, scorer: &ExactSum, pose: &Pose) -> Option<f64> {
         ring::other_copies(self.symmetry()?, scorer, pose)
     }
 
-    /// Poses that are one with a pose of the space.
-    pub fn equivalents(&self) -> Equivalents {
+    /// The equivalents of a pose of the space.
+    pub(crate) fn equivalents(&self) -> Equivalents {
         match self {
             Self::Free => Equivalents::None,
             Self::Cyclic(_) => Equivalents::Inverse,
@@ -195,12 +191,36 @@ impl PoseSpace {
         }
     }
 
-    /// What is sampled, as text calls `count` of it.
+    /// The word for `count` samples.
     pub fn sampled(&self, count: usize) -> String {
         match self.symmetry() {
             Some(symmetry) => format!("axes of {symmetry}"),
             None if count == 1 => "rotation".to_owned(),
             None => "rotations".to_owned(),
         }
+    }
+}
+
+/// Poses that describe the same complex as a pose M.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Equivalents {
+    /// No others.
+    None,
+    /// Its inverse: a ring with its copies counted the other way.
+    Inverse,
+    /// M after a rotation of the body onto itself: a second ring with its copies counted from another one.
+    Rotated(Vec<Pose>),
+}
+
+impl Equivalents {
+    /// The pose and all its equivalents, itself first.
+    pub fn of(&self, pose: &Pose) -> impl Iterator<Item = Pose> {
+        let (inverse, rotations) = match self {
+            Self::None => (None, &[] as &[Pose]),
+            Self::Inverse => (Some(pose.inverse()), &[] as &[Pose]),
+            Self::Rotated(rotations) => (None, &rotations[..]),
+        };
+        let rotated = rotations.iter().map(|rotation| pose.after(rotation));
+        std::iter::once(*pose).chain(inverse).chain(rotated)
     }
 }

@@ -4,7 +4,6 @@
 //! the pose reached is reported afterwards. The caller undoes an ascent that the exact sum does not confirm.
 
 use knotdock_scoring::exact::PoseGradient;
-use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use nalgebra::{Matrix6, UnitQuaternion, Vector3, Vector6};
 
@@ -19,41 +18,34 @@ pub struct AscentLimits {
     pub angle: f64,
     /// Radius of gyration of the ligand, Å: an angle times this is a length, so that both kinds of step compare.
     pub gyration: f64,
-    /// Length that stands for one Ångström: no step is longer, the first is a quarter of it, and the last a thousandth.
+    /// Length in place of one Ångström: no step is longer, the first is a quarter of it, and the last a thousandth.
     pub angstrom: f64,
 }
 
 /// A peak of the search, and the pose that it was refined to.
 #[derive(Clone, Copy)]
 pub(crate) struct RefinedPose {
-    /// The pose before refinement: the grid's, or of rings the one nearest to it.
+    /// The pose before refinement: the grid's, or the ring nearest to it.
     pub start: Pose,
     /// The pose after refinement.
     pub pose: Pose,
-    /// The fast path's score at `pose`, of rings that of all copies.
+    /// The fast path's score at `pose`, of all copies of a ring.
     pub score: f64,
     /// Whether refinement found a better pose.
     pub refined: bool,
 }
 
 impl RefinedPose {
-    /// A grid pose, and what it was refined to where that is better.
+    /// A grid pose, and the refined one if that is better.
     pub fn best_of(grid: (Pose, f64), refined: Option<(Pose, f64)>) -> Self {
         let (start, score) = grid;
-        let unrefined = Self {
+        let better = refined.filter(|(_, higher)| *higher > score);
+        let (pose, score) = better.unwrap_or(grid);
+        Self {
             start,
-            pose: start,
+            pose,
             score,
-            refined: false,
-        };
-        match refined {
-            Some((pose, higher)) if higher > score => Self {
-                pose,
-                score: higher,
-                refined: true,
-                ..unrefined
-            },
-            _ => unrefined,
+            refined: better.is_some(),
         }
     }
 }
@@ -93,13 +85,16 @@ pub fn maximize(
     let (mut value, gradient) = score(&pose);
     let mut gradient = slope(&gradient);
     let first_length = 0.25 * limits.angstrom;
-    let mut inverse = Matrix6::identity() * (first_length / gradient.norm().max(f64::MIN_POSITIVE));
+    let scaled = |gradient: &Vector6<f64>| {
+        Matrix6::identity() * (first_length / gradient.norm().max(f64::MIN_POSITIVE))
+    };
+    let mut inverse = scaled(&gradient);
     let mut fresh = true;
     let mut evaluations = 1;
     while evaluations < limits.evaluations {
         let mut step = inverse * gradient;
         if step.dot(&gradient) <= 0.0 {
-            inverse = Matrix6::identity() * (first_length / gradient.norm().max(f64::MIN_POSITIVE));
+            inverse = scaled(&gradient);
             step = inverse * gradient;
         }
         let length = step.norm();
@@ -153,17 +148,6 @@ pub fn rigid_body(
         let center = pose.rotation * ligand_center + pose.translation;
         Pose::about(turn * pose.rotation, ligand_center, center + shift)
     }
-}
-
-/// Maximizes the fast path's score of a free ligand from `start`.
-pub(super) fn rigid_body_maximum(
-    field: &PotentialGrid,
-    center: Vector3<f64>,
-    start: &Pose,
-    limits: &AscentLimits,
-) -> (Pose, f64) {
-    let gradient = |pose: &Pose| field.gradient(pose);
-    maximize(*start, center, limits, gradient, rigid_body(center))
 }
 
 #[cfg(test)]

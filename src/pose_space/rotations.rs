@@ -3,7 +3,7 @@
 use knotdock_scoring::grid_turn::GridTurn;
 use nalgebra::UnitQuaternion;
 
-/// Rotations of a search: a set, and a finer one about whose best parts a second search may go.
+/// Rotations of a search: a set, and a finer one for a second search about the best rotations.
 ///
 /// Rotations of the finer set are numbered after those of the first.
 #[derive(Clone, Debug)]
@@ -25,7 +25,7 @@ pub struct RotationSample {
 pub struct RotationGroup {
     /// Index of the first.
     pub first: usize,
-    /// Which of its images are searched.
+    /// Whether each of its images is searched.
     pub wanted: [bool; GridTurn::ALL.len()],
 }
 
@@ -42,7 +42,7 @@ impl RotationGroup {
 }
 
 impl RotationSample {
-    /// A rotation by its index, and which turn of the first of its group it is.
+    /// A rotation by its index, with its turn from the first of its group.
     pub fn rotation(&self, index: usize) -> (UnitQuaternion<f64>, GridTurn) {
         let (set, index) = match index.checked_sub(self.coarse.len()) {
             None => (&self.coarse, index),
@@ -53,19 +53,22 @@ impl RotationSample {
 
     /// All groups of the coarse set.
     pub fn groups(&self) -> Vec<RotationGroup> {
-        let count = self.coarse.len();
-        let group = |first| RotationGroup {
-            first,
-            wanted: std::array::from_fn(|image| image < self.images && first + image < count),
-        };
-        (0..count).step_by(self.images).map(group).collect()
+        self.groups_of((0, self.coarse.len()), |_| true)
     }
 
     /// Groups of the finer set, less the rotations that `is_wanted` (by their place in the finer set) leaves out.
     pub fn fine_groups(&self, is_wanted: impl Fn(usize) -> bool) -> Vec<RotationGroup> {
-        let count = self.fine.len();
+        self.groups_of((self.coarse.len(), self.fine.len()), is_wanted)
+    }
+
+    /// Groups of the `count` rotations from index `start` on.
+    fn groups_of(
+        &self,
+        (start, count): (usize, usize),
+        is_wanted: impl Fn(usize) -> bool,
+    ) -> Vec<RotationGroup> {
         let group = |first: usize| RotationGroup {
-            first: self.coarse.len() + first,
+            first: start + first,
             wanted: std::array::from_fn(|image| {
                 image < self.images && first + image < count && is_wanted(first + image)
             }),

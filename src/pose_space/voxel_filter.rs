@@ -23,9 +23,9 @@ pub(crate) struct VoxelFilter {
 struct Layer {
     /// The plane's normal.
     normal: Unit<Vector3<f64>>,
-    /// Where along it a voxel at the origin of positions lies, from the plane, Å.
+    /// Distance along it of a voxel at the origin of positions from the plane, Å.
     start: f64,
-    /// Half of what a voxel reaches along it, Å.
+    /// Half of a voxel's extent along it, Å.
     reach: f64,
 }
 
@@ -59,7 +59,7 @@ impl VoxelFilter {
         normal: Unit<Vector3<f64>>,
         shift: f64,
     ) -> Layer {
-        // How far a ligand is moved along it whose centre lies on the receptor's.
+        // Shift of a ligand whose centre is that of the receptor.
         let from = self.receptor_center - rotation * self.ligand_center;
         Layer {
             normal,
@@ -161,7 +161,7 @@ mod tests {
         }
     }
 
-    /// Where the axis must cross a ring's own, the filter keeps the voxels about which the pose also moves a point of
+    /// If the axis must cross a ring's own, the filter keeps the voxels about which the pose also moves a point of
     /// that axis both ways aside. They form a line, which holds the half turns at all heights.
     #[test]
     fn of_two_rings_voxels_along_their_axis_stay() {

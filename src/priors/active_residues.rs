@@ -36,9 +36,10 @@ fn records<S: Serializer>(sites: &[Site], to: S) -> Result<S::Ok, S::Error> {
 impl ActiveResidues {
     /// Residues that the user names.
     pub(crate) fn named(residues: Residues, options: &DockOptions) -> Self {
-        let any = residues.iter().any(|side| !side.is_empty());
+        let mut sets = vec![residues];
+        sets.retain(|residues| residues.iter().any(|side| !side.is_empty()));
         Self {
-            sets: if any { vec![residues] } else { Vec::new() },
+            sets,
             weight: options.terms.active_weight,
             assumed: None,
         }
@@ -51,11 +52,9 @@ impl ActiveResidues {
         options: &DockOptions,
     ) -> Self {
         let weight = options.restraints.peptidase_weight;
-        let assumed = (weight > 0.0).then(|| AssumedSite::of(sites, roles));
-        let assumed = assumed.flatten();
-        let sets = assumed.as_ref().map_or(Vec::new(), AssumedSite::residues);
+        let assumed = AssumedSite::of(sites, roles).filter(|_| weight > 0.0);
         Self {
-            sets,
+            sets: assumed.as_ref().map_or(Vec::new(), AssumedSite::residues),
             weight,
             assumed,
         }
@@ -84,10 +83,8 @@ impl AssumedSite {
             let mut atoms = site.residues.iter().flatten();
             !atoms.any(|&atom| roles[side].get(atom) == Some(&ResidueRole::Excluded))
         };
-        let sites: Vec<Site> = of_role(side, SiteRole::Favoured)
-            .filter(is_free)
-            .cloned()
-            .collect();
+        let free = of_role(side, SiteRole::Favoured).filter(is_free);
+        let sites: Vec<Site> = free.cloned().collect();
         (!sites.is_empty()).then_some(Self { partner, sites })
     }
 
@@ -170,7 +167,9 @@ mod tests {
         assert!(two.sets.is_empty() && two.assumed.is_none());
         let changes: [fn(&mut DockOptions); 5] = [
             |options| options.restraints.peptidase_weight = 0.0,
-            |options| options.kernel.effects = "shape,electrostatics".parse().unwrap(),
+            |options| {
+                options.kernel.effects = "shape,electrostatics".to_owned().try_into().unwrap();
+            },
             |options| options.restraints.block_receptor = Some("A:195".parse().unwrap()),
             |options| options.restraints.active_ligand = Some("B:5".parse().unwrap()),
             |options| {

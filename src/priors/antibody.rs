@@ -24,72 +24,39 @@ use super::{Findings, Prior, Site, SiteRole};
 
 /// Distance in Å from the nearest atom of a CDR up to which an antibody's atoms belong to the paratope: the reach of a
 /// contact.
-pub const PARATOPE_EDGE: f64 = 5.0;
-
-/// Chain that a variable domain belongs to.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum VariableKind {
-    /// Heavy chains, those of single-domain antibodies among them.
-    Heavy,
-    /// Kappa light chains.
-    Kappa,
-    /// Lambda light chains.
-    Lambda,
-}
-
-impl VariableKind {
-    fn of(chain: Chain) -> Option<Self> {
-        match chain {
-            Chain::IGH => Some(Self::Heavy),
-            Chain::IGK => Some(Self::Kappa),
-            Chain::IGL => Some(Self::Lambda),
-            _ => None,
-        }
-    }
-
-    /// The kind in words.
-    pub fn name(self) -> &'static str {
-        match self {
-            Self::Heavy => "heavy",
-            Self::Kappa => "kappa",
-            Self::Lambda => "lambda",
-        }
-    }
-}
+const PARATOPE_EDGE: f64 = 5.0;
 
 /// A variable domain of an antibody.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct VariableDomain {
-    /// Kind of the chain that it belongs to.
-    pub kind: VariableKind,
+struct VariableDomain {
+    /// Kind of its chain: heavy (of single-domain antibodies, too), kappa or lambda.
+    kind: &'static str,
     /// The file's name of its chain; may be empty.
-    pub chain: String,
+    chain: String,
     /// First and last residue: the author's number with its insertion code.
-    pub residues: [String; 2],
-    /// Residues of its three CDRs, in order, each by the author's number with its insertion code; residues that the
-    /// file does not resolve are left out.
-    pub cdrs: [Vec<String>; 3],
+    residues: [String; 2],
+    /// Resolved residues of its three CDRs, in order, each by the author's number with its insertion code.
+    cdrs: [Vec<String>; 3],
 }
 
 /// An antibody: its variable domains and its binding site.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Antibody {
+struct Antibody {
     /// Its variable domains, in file order.
-    pub domains: Vec<VariableDomain>,
+    domains: Vec<VariableDomain>,
     /// For each atom of the molecule, whether it belongs to a CDR.
-    pub determining: Vec<bool>,
-    /// For each atom, whether it belongs to a CDR or lies within [`PARATOPE_EDGE`] of an atom that does.
-    pub paratope: Vec<bool>,
+    determining: Vec<bool>,
+    /// For each atom, whether it is within [`PARATOPE_EDGE`] of an atom of a CDR, or is one.
+    paratope: Vec<bool>,
 }
 
 impl Antibody {
-    /// The variable domains of antibodies in a molecule; `None` where there is none.
-    pub fn of(molecule: &Molecule) -> Option<Self> {
+    /// The variable domains of antibodies in a molecule; `None` if there is none.
+    fn of(molecule: &Molecule) -> Option<Self> {
         let mut domains = Vec::new();
         let mut determining = vec![false; molecule.atoms.len()];
         for chain in molecule.peptide_chains() {
-            for (domain, regions) in ANNOTATORS.variable_domains(&chain) {
+            for (domain, regions) in variable_domains(&chain) {
                 for (residue, region) in chain.residues.iter().zip(regions) {
                     if region.is_some() {
                         determining[residue.atoms.clone()].fill(true);
@@ -106,17 +73,17 @@ impl Antibody {
     }
 
     /// The variable domains in words.
-    pub fn domains_in_words(&self) -> String {
+    fn domains_in_words(&self) -> String {
         let words = |domain: &VariableDomain| {
             let [first, last] = &domain.residues;
-            format!("{} {}:{first}-{last}", domain.kind.name(), domain.chain)
+            format!("{} {}:{first}-{last}", domain.kind, domain.chain)
         };
         let domains = self.domains.iter().map(words);
         domains.collect::<Vec<_>>().join(", ")
     }
 
-    /// What it is and where it binds, in words.
-    pub fn reason(&self) -> String {
+    /// Its domains and its site, in words.
+    fn reason(&self) -> String {
         format!(
             "an antibody ({}), which binds by its CDRs and what lies within {PARATOPE_EDGE} Å of them",
             self.domains_in_words()
@@ -125,17 +92,13 @@ impl Antibody {
 }
 
 /// Antibodies bind by their CDRs and the atoms around them.
-pub struct AntibodyPrior;
-
-/// Score of a contact away from the paratope, in contacts: about what contacts earn.
-const WEIGHT: f64 = 1.0;
+pub(super) struct AntibodyPrior;
 
 impl Prior for AntibodyPrior {
     fn sites(&self, molecule: &Molecule) -> Vec<Site> {
         let site = |antibody: Antibody| Site {
             role: SiteRole::Exclusive,
             residues: molecule.atoms_by_residue(&antibody.paratope),
-            weight: WEIGHT,
             reason: antibody.reason(),
             record: json!(antibody.domains),
         };
@@ -165,12 +128,8 @@ fn lines(antibody: &Antibody) -> Vec<String> {
             [only] => only.clone(),
             [first, .., last] => format!("{first}-{last}"),
         });
-        lines.push(format!(
-            "CDRs of {} {}: {}",
-            domain.kind.name(),
-            domain.chain,
-            cdrs.collect::<Vec<_>>().join(", ")
-        ));
+        let cdrs = cdrs.collect::<Vec<_>>().join(", ");
+        lines.push(format!("CDRs of {} {}: {cdrs}", domain.kind, domain.chain));
     }
     lines
 }
@@ -178,98 +137,80 @@ fn lines(antibody: &Antibody) -> Vec<String> {
 /// Whether each atom is one of the `chosen` or lies within `distance` (Å) of one.
 fn near(molecule: &Molecule, chosen: &[bool], distance: f64) -> Vec<bool> {
     let positions = || molecule.atoms.iter().map(|atom| atom.position);
-    let chosen: Vec<[f64; 3]> = positions()
-        .zip(chosen)
-        .filter_map(|(position, chosen)| chosen.then_some(position))
-        .collect();
+    let chosen = positions().zip(chosen).filter(|(_, chosen)| **chosen);
+    let chosen: Vec<[f64; 3]> = chosen.map(|(position, _)| position).collect();
     let cells = SpatialHash::of_points(chosen.iter().copied(), distance);
     let is_near = |position: [f64; 3]| {
         cells.around(position).any(|&other| {
-            let square: f64 = (0..3)
-                .map(|axis| (position[axis] - chosen[other][axis]).powi(2))
-                .sum();
-            square <= distance * distance
+            let along = |axis: usize| (position[axis] - chosen[other][axis]).powi(2);
+            (0..3).map(along).sum::<f64>() <= distance * distance
         })
     };
     positions().map(is_near).collect()
 }
 
-/// Both numberings: to make one takes longer than to number a chain that is no antibody's.
-static ANNOTATORS: LazyLock<Annotators> = LazyLock::new(Annotators::new);
+/// Numbering by IMGT and by Kabat, made once: that takes longer than the numbering of a chain.
+static ANNOTATORS: LazyLock<[Annotator; 2]> = LazyLock::new(|| {
+    // Errors are of chains that a scheme lacks and of confidences out of range.
+    [Scheme::IMGT, Scheme::Kabat].map(|scheme| {
+        Annotator::new(IG_CHAINS, scheme, None)
+            .unwrap_or_else(|error| unreachable!("numbering of antibodies: {error}"))
+    })
+});
 
-/// Numbering of any chain by both schemes.
-struct Annotators {
-    imgt: Annotator,
-    kabat: Annotator,
-}
-
-impl Annotators {
-    fn new() -> Self {
-        // Both schemes number all chains of antibodies, and the default confidence is in range: these are all that can
-        // be refused.
-        let of = |scheme| {
-            Annotator::new(IG_CHAINS, scheme, None)
-                .unwrap_or_else(|error| unreachable!("numbering of antibodies: {error}"))
+/// The variable domains of one chain, each with the CDR (0 to 2) of this domain that each residue of the chain belongs to.
+fn variable_domains(chain: &PeptideChain<'_>) -> Vec<(VariableDomain, Vec<Option<usize>>)> {
+    let sequence = chain.sequence();
+    let residues = &chain.residues;
+    // A chain that is too short or too long for an antibody is an error, as is one without a domain.
+    let numbered = ANNOTATORS
+        .each_ref()
+        .map(|one| one.number_domains(&sequence));
+    let [Ok(imgt), Ok(kabat)] = numbered else {
+        return Vec::new();
+    };
+    let mut found = Vec::new();
+    for domain in &imgt {
+        let kind = match domain.chain {
+            Chain::IGH => "heavy",
+            Chain::IGK => "kappa",
+            Chain::IGL => "lambda",
+            _ => continue,
         };
-        Self {
-            imgt: of(Scheme::IMGT),
-            kabat: of(Scheme::Kabat),
-        }
-    }
-
-    /// The variable domains of one chain, each with the CDR (0 to 2) of this domain that each residue of the chain
-    /// belongs to.
-    fn variable_domains(
-        &self,
-        chain: &PeptideChain<'_>,
-    ) -> Vec<(VariableDomain, Vec<Option<usize>>)> {
-        let sequence = chain.sequence();
-        let residues = &chain.residues;
-        // A chain too short, or longer than any antibody's, is an error of the search, as is one without a domain.
-        let numbered = |annotator: &Annotator| annotator.number_domains(&sequence).ok();
-        let (Some(imgt), Some(kabat)) = (numbered(&self.imgt), numbered(&self.kabat)) else {
-            return Vec::new();
-        };
-        let mut found = Vec::new();
-        for domain in &imgt {
-            let Some(kind) = VariableKind::of(domain.chain) else {
-                continue;
-            };
-            let span = domain.query_start..=domain.query_end;
-            let mut regions = vec![None; residues.len()];
-            for numbering in [domain].into_iter().chain(&kabat) {
-                let places = (numbering.query_start..).zip(&numbering.positions);
-                for (place, position) in places.filter(|(place, _)| span.contains(place)) {
-                    let region =
-                        region_for_position(position.number, numbering.scheme, numbering.chain);
-                    if let (Some(cdr), Some(own)) = (region.and_then(cdr), regions.get_mut(place)) {
-                        *own = Some(cdr);
-                    }
+        let span = domain.query_start..=domain.query_end;
+        let mut regions = vec![None; residues.len()];
+        for numbering in [domain].into_iter().chain(&kabat) {
+            let places = (numbering.query_start..).zip(&numbering.positions);
+            for (place, position) in places.filter(|(place, _)| span.contains(place)) {
+                let region =
+                    region_for_position(position.number, numbering.scheme, numbering.chain);
+                if let (Some(cdr), Some(own)) = (region.and_then(cdr), regions.get_mut(place)) {
+                    *own = Some(cdr);
                 }
             }
-            let label = |place: usize| {
-                let residue = residues.get(place);
-                residue.map_or(String::new(), |residue| residue.number.clone())
-            };
-            let cdrs = std::array::from_fn(|cdr| {
-                let own = (0..residues.len()).filter(|&place| regions[place] == Some(cdr));
-                own.map(label).collect()
-            });
-            found.push((
-                VariableDomain {
-                    kind,
-                    chain: chain.name.to_owned(),
-                    residues: [label(domain.query_start), label(domain.query_end)],
-                    cdrs,
-                },
-                regions,
-            ));
         }
-        found
+        let label = |place: usize| {
+            let residue = residues.get(place);
+            residue.map_or(String::new(), |residue| residue.number.clone())
+        };
+        let cdrs = std::array::from_fn(|cdr| {
+            let own = (0..residues.len()).filter(|&place| regions[place] == Some(cdr));
+            own.map(label).collect()
+        });
+        found.push((
+            VariableDomain {
+                kind,
+                chain: chain.name.to_owned(),
+                residues: [label(domain.query_start), label(domain.query_end)],
+                cdrs,
+            },
+            regions,
+        ));
     }
+    found
 }
 
-/// Which CDR a region is, from 0.
+/// The CDR of a region, from 0.
 fn cdr(region: Region) -> Option<usize> {
     match region {
         Region::CDR1 => Some(0),
@@ -317,14 +258,8 @@ mod tests {
         let [heavy, kappa] = &antibody.domains[..] else {
             panic!("{:?}", antibody.domains);
         };
-        assert_eq!(
-            (heavy.kind, heavy.chain.as_str()),
-            (VariableKind::Heavy, "H")
-        );
-        assert_eq!(
-            (kappa.kind, kappa.chain.as_str()),
-            (VariableKind::Kappa, "L")
-        );
+        assert_eq!((heavy.kind, heavy.chain.as_str()), ("heavy", "H"));
+        assert_eq!((kappa.kind, kappa.chain.as_str()), ("kappa", "L"));
         assert_eq!(heavy.residues, ["1", "120"]);
         assert_eq!(
             letters(heavy, HEAVY),
@@ -360,8 +295,8 @@ mod tests {
             chain("A", LYSOZYME, 400),
         ];
         let antibody = Antibody::of(&Molecule::new(merged.concat(), Format::Pdb)).unwrap();
-        let kinds: Vec<VariableKind> = antibody.domains.iter().map(|domain| domain.kind).collect();
-        assert_eq!(kinds, [VariableKind::Kappa, VariableKind::Heavy]);
+        let kinds: Vec<&str> = antibody.domains.iter().map(|domain| domain.kind).collect();
+        assert_eq!(kinds, ["kappa", "heavy"]);
         assert_eq!(letters(&antibody.domains[1], HEAVY)[2], "SRWGGDGFYAMDY");
         assert_eq!(
             antibody.determining.iter().filter(|own| **own).count(),

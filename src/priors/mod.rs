@@ -1,19 +1,16 @@
 //! Priors: knowledge of kinds of proteins beyond the two structures at hand, such as where an antibody binds.
 //!
 //! A prior finds the sites of a molecule that mostly bind. A new kind of protein is one file here and one line in
-//! [`PRIORS`]; the scene of a docking run and `knotdock inspect` walk the registry.
+//! [`PRIORS`], which docking runs and `knotdock inspect` read.
 
 pub mod active_residues;
-pub mod antibody;
+mod antibody;
 pub mod flexible_regions;
-pub mod peptidase;
+mod peptidase;
 pub mod residue_roles;
 pub mod restrained;
 #[cfg(test)]
 mod test_chains;
-
-pub use antibody::{Antibody, PARATOPE_EDGE, VariableDomain, VariableKind};
-pub use peptidase::ActiveSite;
 
 use knotdock_structures::molecule::Molecule;
 
@@ -22,7 +19,7 @@ use knotdock_structures::molecule::Molecule;
 pub enum SiteRole {
     /// The molecule binds here alone: contacts of its other atoms take off the score.
     Exclusive,
-    /// A pose earns the share of the residues that touches. Of several sites of a molecule any may be the one.
+    /// A pose scores by the share of the residues that touch; any of several sites may be the one that binds.
     Favoured,
 }
 
@@ -33,9 +30,7 @@ pub struct Site {
     pub role: SiteRole,
     /// Its residues in file order, each by the indices of those atoms that belong to the site.
     pub residues: Vec<Vec<usize>>,
-    /// Score at the default options: of a contact elsewhere (exclusive), or of touching all residues (favoured).
-    pub weight: f64,
-    /// What the molecule is and where it binds, in words that follow "the receptor is".
+    /// The kind of the molecule and its site, in words that follow "the receptor is".
     pub reason: String,
     /// Entry of `run.json`.
     pub record: serde_json::Value,
@@ -52,23 +47,23 @@ pub(crate) fn sites(molecule: &Molecule) -> Vec<Site> {
 pub struct Findings {
     /// The entry in JSON.
     pub entry: serde_json::Value,
-    /// Lines for people; none where nothing was found.
+    /// Lines for people; empty if nothing was found.
     pub lines: Vec<String>,
 }
 
 /// Knowledge of one kind of proteins.
 pub trait Prior: Sync {
-    /// The sites of a molecule; none where it is not of the kind.
+    /// The sites of a molecule; none if it is of another kind.
     fn sites(&self, molecule: &Molecule) -> Vec<Site>;
 
     /// Name of the entry that [`Prior::findings`] give in JSON.
     fn entry_name(&self) -> &'static str;
 
-    /// What is found in a molecule, for `knotdock inspect`.
+    /// The findings in a molecule, for `knotdock inspect`.
     fn findings(&self, molecule: &Molecule) -> Findings;
 }
 
-/// All kinds of proteins that are known.
+/// All priors.
 pub const PRIORS: [&dyn Prior; 2] = [&antibody::AntibodyPrior, &peptidase::PeptidasePrior];
 
 #[cfg(test)]
@@ -91,7 +86,7 @@ mod tests {
             let has_site = !prior.sites(&trypsin).is_empty();
             assert_eq!(!prior.findings(&trypsin).lines.is_empty(), has_site);
             for site in prior.sites(&trypsin) {
-                assert!(site.weight > 0.0 && !site.residues.is_empty() && !site.reason.is_empty());
+                assert!(!site.residues.is_empty() && !site.reason.is_empty());
                 assert!(
                     site.residues
                         .iter()

@@ -2,14 +2,13 @@
 //!
 //! A peptidase cuts proteins, so a protein that binds it, an inhibitor above all, mostly does so at its active site.
 //!
-//! Six families are detected from the segments of sequence about their catalytic residues, and by these standing
-//! together in space (`peptidase_families.csv` has the table). Side chains are not looked at: in structures they may be
-//! turned, flipped or missing, and a nucleophile mutated, modified or left out.
+//! Six families are detected from the segments of sequence about their catalytic residues, and from their distances
+//! (`peptidase_families.csv` has the table). Side chains have no effect: in structures they may be turned, flipped or
+//! missing, and a nucleophile mutated, modified or left out.
 //!
-//! Families whose sites lie deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or that cut small molecules
-//! besides (lipases, esterases) are left out.
+//! Families with sites deep in a cleft (angiotensin-converting enzyme 2, neprilysin) or with small substrates besides
+//! (lipases, esterases) are left out.
 
-use crate::options::PEPTIDASE_WEIGHT;
 use std::collections::BTreeSet;
 use std::ops::Range;
 use std::sync::LazyLock;
@@ -25,29 +24,30 @@ const TOGETHER: f64 = 12.0;
 
 /// The active site of a peptidase.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize)]
-pub struct ActiveSite {
-    /// The family, by its name in MEROPS; M10 stands for all metzincins.
-    pub family: &'static str,
+struct ActiveSite {
+    /// The family, by its name in MEROPS; M10 represents all metzincins.
+    family: &'static str,
     /// An enzyme that the family is known by.
-    pub known_by: &'static str,
+    known_by: &'static str,
     /// Catalytic residues, each as `chain:number` by the author's names, with the insertion code.
-    pub residues: Vec<String>,
+    residues: Vec<String>,
     /// The indices of the atoms of each catalytic residue in the molecule.
     #[serde(skip)]
-    pub atoms: Vec<Vec<usize>>,
+    atoms: Vec<Vec<usize>>,
 }
 
 impl ActiveSite {
     /// The active sites of peptidases in a molecule, by family and then in file order; copies of an enzyme have one
     /// each.
-    pub fn all(molecule: &Molecule) -> Vec<Self> {
+    fn all(molecule: &Molecule) -> Vec<Self> {
         let chains = molecule.peptide_chains();
-        let chains: Vec<(&PeptideChain<'_>, Vec<char>)> = chains
+        let sequence = |chain: &PeptideChain<'_>| chain.sequence().chars().collect();
+        let chains: Vec<_> = chains
             .iter()
-            .map(|chain| (chain, chain.sequence().chars().collect()))
+            .map(|chain| (chain, sequence(chain)))
             .collect();
         let mut sites = Vec::new();
-        for family in families() {
+        for family in FAMILIES.iter() {
             let of = |anchor: &Anchor| places(molecule, anchor, &chains);
             let found: Vec<Vec<Vec<CatalyticResidue>>> = family.anchors.iter().map(of).collect();
             for catalytic in together(&found) {
@@ -74,14 +74,14 @@ impl ActiveSite {
     }
 
     /// Several sites in words.
-    pub fn all_in_words(sites: &[Self]) -> String {
+    fn all_in_words(sites: &[Self]) -> String {
         let words: Vec<String> = sites.iter().map(Self::in_words).collect();
         words.join("; ")
     }
 }
 
 /// Peptidases bind proteins at their active sites.
-pub struct PeptidasePrior;
+pub(super) struct PeptidasePrior;
 
 impl Prior for PeptidasePrior {
     fn sites(&self, molecule: &Molecule) -> Vec<Site> {
@@ -90,7 +90,6 @@ impl Prior for PeptidasePrior {
             reason: format!("a peptidase, {}", site.in_words()),
             record: json!(site),
             residues: site.atoms,
-            weight: PEPTIDASE_WEIGHT,
         };
         ActiveSite::all(molecule).into_iter().map(site).collect()
     }
@@ -102,13 +101,10 @@ impl Prior for PeptidasePrior {
     fn findings(&self, molecule: &Molecule) -> Findings {
         let sites = ActiveSite::all(molecule);
         let words = ActiveSite::all_in_words(&sites);
-        let any = !sites.is_empty();
+        let lines = (!sites.is_empty()).then(|| format!("A peptidase, {words}"));
         Findings {
             entry: json!(sites),
-            lines: any
-                .then(|| format!("A peptidase, {words}"))
-                .into_iter()
-                .collect(),
+            lines: lines.into_iter().collect(),
         }
     }
 }
@@ -163,20 +159,16 @@ fn catalytic_residue(
 
 /// Whether a sequence begins with a pattern.
 fn fits(sequence: &[char], pattern: &[String]) -> bool {
+    let mut places = pattern.iter().zip(sequence);
     sequence.len() >= pattern.len()
-        && pattern
-            .iter()
-            .zip(sequence)
-            .all(|(allowed, letter)| allowed.is_empty() || allowed.contains(*letter))
+        && places.all(|(allowed, letter)| allowed.is_empty() || allowed.contains(*letter))
 }
 
-/// One place of every anchor, all of whose catalytic residues stand together, in each way that there is.
+/// Every combination of one place per anchor in which all catalytic residues are near each other.
 fn together(found: &[Vec<Vec<CatalyticResidue>>]) -> Vec<Vec<CatalyticResidue>> {
     let near = |a: &CatalyticResidue, b: &CatalyticResidue| {
-        let square: f64 = (0..3)
-            .map(|axis| (a.position[axis] - b.position[axis]).powi(2))
-            .sum();
-        a.atoms != b.atoms && square <= TOGETHER * TOGETHER
+        let along = |axis: usize| (a.position[axis] - b.position[axis]).powi(2);
+        a.atoms != b.atoms && (0..3).map(along).sum::<f64>() <= TOGETHER * TOGETHER
     };
     let mut ways: Vec<Vec<CatalyticResidue>> = vec![Vec::new()];
     for places in found {
@@ -186,13 +178,11 @@ fn together(found: &[Vec<Vec<CatalyticResidue>>]) -> Vec<Vec<CatalyticResidue>> 
                 way.iter().all(all)
             };
             let places = places.iter().filter(fit);
-            places
-                .map(|place| [way.as_slice(), place].concat())
-                .collect()
+            places.map(|place| [&way[..], place].concat()).collect()
         };
         ways = ways.iter().flat_map(with).collect();
     }
-    // Where two anchors are alike, each way comes in either order.
+    // If two anchors are alike, each way comes in either order.
     let mut seen = BTreeSet::new();
     ways.retain(|way| {
         let atoms = way.iter().map(|found| found.atoms.start);
@@ -210,7 +200,7 @@ type Pattern = Vec<String>;
 /// A conserved segment about catalytic residues.
 #[derive(Clone, Debug, PartialEq, Eq)]
 struct Anchor {
-    /// What the segment may look like; of several that fit at one place the first counts.
+    /// Forms of the segment; the first of several that fit at one place counts.
     pub patterns: Vec<Pattern>,
     /// Places of the catalytic residues in it, from 0.
     pub catalytic: Vec<usize>,
@@ -228,13 +218,10 @@ struct Family {
 }
 
 /// The families, in the order of the table.
-fn families() -> &'static [Family] {
-    static FAMILIES: LazyLock<Vec<Family>> = LazyLock::new(|| {
-        // The table is part of the program, and a test reads it.
-        parse(TABLE).unwrap_or_else(|| unreachable!("the table of peptidase families"))
-    });
-    &FAMILIES
-}
+static FAMILIES: LazyLock<Vec<Family>> = LazyLock::new(|| {
+    // The table is part of the program, and a test reads it.
+    parse(TABLE).unwrap_or_else(|| unreachable!("the table of peptidase families"))
+});
 
 /// The families of a table; `None` if a row cannot be read.
 fn parse(table: &str) -> Option<Vec<Family>> {
@@ -262,21 +249,15 @@ fn parse(table: &str) -> Option<Vec<Family>> {
 }
 
 fn anchor(patterns: &str, catalytic: &str) -> Option<Anchor> {
-    let patterns: Vec<Pattern> = patterns
-        .split('|')
-        .map(|pattern| pattern.trim().split('-').map(allowed).collect())
-        .collect::<Option<_>>()?;
+    let pattern = |pattern: &str| pattern.trim().split('-').map(allowed).collect();
+    let patterns: Vec<Pattern> = patterns.split('|').map(pattern).collect::<Option<_>>()?;
     let shortest = patterns.iter().map(Vec::len).min().unwrap_or(0);
     let place = |text: &str| {
-        let place = text.parse::<usize>().ok();
-        place
-            .filter(|place| (1..=shortest).contains(place))
-            .map(|place| place - 1)
+        let place = text.parse::<usize>().ok()?.checked_sub(1);
+        place.filter(|place| *place < shortest)
     };
-    let catalytic: Vec<usize> = catalytic
-        .split_whitespace()
-        .map(place)
-        .collect::<Option<_>>()?;
+    let places = catalytic.split_whitespace().map(place);
+    let catalytic: Vec<usize> = places.collect::<Option<_>>()?;
     (!catalytic.is_empty()).then_some(Anchor {
         patterns,
         catalytic,
@@ -285,10 +266,10 @@ fn anchor(patterns: &str, catalytic: &str) -> Option<Anchor> {
 
 /// The amino acids allowed at one place of a pattern: `x`, one letter, or letters in brackets.
 fn allowed(place: &str) -> Option<String> {
-    let letters = place
+    let inner = place
         .strip_prefix('[')
-        .and_then(|rest| rest.strip_suffix(']'))
-        .unwrap_or(place);
+        .and_then(|rest| rest.strip_suffix(']'));
+    let letters = inner.unwrap_or(place);
     let are_letters = letters.chars().all(|letter| letter.is_ascii_uppercase());
     match letters {
         "x" => Some(String::new()),

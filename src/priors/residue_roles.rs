@@ -44,19 +44,15 @@ impl ResidueRoles {
             if let Some(residues) = blocked[side] {
                 let atoms = selected(molecule, name, "block", residues)?;
                 set_role(&mut roles, &atoms, ResidueRole::Excluded);
-                reasons.push(format!(
-                    "blocked: {} of the {name}",
-                    String::from(residues.clone())
-                ));
+                let residues = String::from(residues.clone());
+                reasons.push(format!("blocked: {residues} of the {name}"));
             }
             if let Some(residues) = active[side] {
                 let atoms = selected(molecule, name, "active", residues)?;
                 all.active[side] = molecule.atoms_by_residue(&atoms);
                 set_role(&mut roles, &atoms, ResidueRole::Active);
-                reasons.push(format!(
-                    "active: {} of the {name}",
-                    String::from(residues.clone())
-                ));
+                let residues = String::from(residues.clone());
+                reasons.push(format!("active: {residues} of the {name}"));
             }
             all.roles[side] = roles;
         }
@@ -181,7 +177,6 @@ pub(crate) mod tests {
         let site = |role: SiteRole| Site {
             role,
             residues: vec![vec![1], vec![2]],
-            weight: 1.0,
             reason: "an antibody".to_owned(),
             record: serde_json::Value::Null,
         };

@@ -1,5 +1,4 @@
-//! What is known of one docking: distances between receptor and ligand, residues that are
-//! likely in contact, and a membrane.
+//! Restraints of one docking: distances between receptor and ligand, residues that are likely in contact, and a membrane.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{DistanceRestraints, Membrane, PredictedResidue};
@@ -9,10 +8,10 @@ use crate::options::RestraintOptions;
 use crate::restraints::FileRestraints;
 use knotdock_structures::Error;
 
-/// Distance restraints with how many of them a pose has to satisfy, predictions of the interface, and a membrane.
+/// Distance restraints with the number that a pose has to satisfy, predictions of the interface, and a membrane.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Restrained {
-    /// Atoms, bounds, and how many have to be satisfied.
+    /// Atoms, bounds, and the number that has to be satisfied.
     pub distances: DistanceRestraints,
     /// Their names, in the same order.
     pub names: Vec<String>,
@@ -30,7 +29,7 @@ impl Restrained {
     /// The restraints and predictions of the options; none without files.
     ///
     /// # Errors
-    /// [`Error`] where a file does not fit the molecules, or has fewer restraints than have to be satisfied.
+    /// [`Error`] for a file that does not fit the molecules, or has fewer restraints than have to be satisfied.
     pub(crate) fn new(
         molecules: [&Molecule; 2],
         options: &RestraintOptions,
@@ -60,17 +59,13 @@ impl Restrained {
         } = file.between(molecules, options.crosslink, options.tbl_bounds)?;
         let (needed, count) = (options.restraints_need, list.len());
         let needed = needed.of(count).ok_or_else(|| {
-            Error::input(format!(
-                "{needed} restraints have to be satisfied, and there are {count}"
-            ))
-            .help(format!(
-                "give --restraints-need a number up to {count}, or a share"
-            ))
+            let message =
+                format!("{needed} restraints have to be satisfied, and there are {count}");
+            let remedy = format!("give --restraints-need a number up to {count}, or a share");
+            Error::input(message).help(remedy)
         })?;
-        let widened = list
-            .iter()
-            .map(|restraint| restraint.upper - restraint.written_upper)
-            .filter(|more| *more > 0.0);
+        let more = list.iter().map(|one| one.upper - one.written_upper);
+        let widened = more.filter(|more| *more > 0.0);
         let least = widened.clone().reduce(f64::min);
         Ok(Self {
             widened: least.zip(widened.reduce(f64::max)).map(Into::into),

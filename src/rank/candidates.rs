@@ -1,5 +1,4 @@
-//! Candidates: where the search's peaks led to, judged by the fast path; those that are one are merged, and they form
-//! clusters.
+//! Candidates: the poses that the search's peaks were refined to, scored by the fast path, merged and clustered.
 
 use crate::pose_space::refine::RefinedPose;
 use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
@@ -10,7 +9,7 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{Rescorer, TermValues, Workspace};
 use rayon::prelude::*;
 
-/// A pose in the running.
+/// A pose that may become a row.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
     /// The pose.
@@ -21,11 +20,11 @@ pub(crate) struct Candidate {
     pub pose_terms: TermValues,
     /// The pose that it was refined from.
     pub start: Pose,
-    /// All terms at `start`, where they are known already.
+    /// All terms at `start`, if they are known already.
     pub terms: Option<ScoreTerms>,
     /// Whether `pose` was moved off the grid.
     pub refined: bool,
-    /// Its sharp fit, where it has been looked for.
+    /// Its sharp fit, if one was made.
     pub sharp: Option<SharpPose>,
     /// Index of the rotation that it came from.
     pub rotation: usize,
@@ -33,8 +32,8 @@ pub(crate) struct Candidate {
     pub score_grid: f64,
 }
 
-/// Peaks and where they led to, rescored, best first, ties in the order given. `at_start` holds all terms at the
-/// starts of the first.
+/// Peaks with their refined poses as rescored candidates, best first, ties in the order given. `at_start` holds all terms
+/// at the starts of the first.
 pub(crate) fn candidates(
     peaks: &[Peak],
     placed: &[RefinedPose],
@@ -76,7 +75,7 @@ impl Candidate {
         self.score - sharp.unwrap_or(0.0)
     }
 
-    /// Whether it was moved into the optimum of its sharp fit, as those are whose fits score.
+    /// Whether it was moved into the optimum of its sharp fit, as all whose fits score.
     pub fn is_settled(&self) -> bool {
         self.sharp.is_some_and(SharpPose::is_rewarded)
     }
@@ -87,22 +86,17 @@ impl Candidate {
     }
 }
 
-/// Drops poses off the grid that ended where a better one did.
+/// Drops poses off the grid that are near a better one.
 pub(crate) fn merge(candidates: &mut Vec<Candidate>, body: &RigidBody, distance: f64) {
-    let poses: Vec<Pose> = candidates
+    let off_grid = candidates
         .iter()
-        .filter(|candidate| candidate.is_off_grid())
-        .map(|candidate| candidate.pose)
-        .collect();
-    let groups = greedy(body, &poses, distance);
-    let (mut index, mut seen) = (0, 0);
+        .filter(|candidate| candidate.is_off_grid());
+    let poses: Vec<Pose> = off_grid.map(|candidate| candidate.pose).collect();
+    let mut groups = greedy(body, &poses, distance).into_iter();
+    let mut seen = 0;
     candidates.retain(|candidate| {
-        if !candidate.is_off_grid() {
-            return true;
-        }
-        let is_best = groups[index] == seen;
-        index += 1;
-        seen += usize::from(is_best);
+        let is_best = !candidate.is_off_grid() || groups.next() == Some(seen);
+        seen += usize::from(is_best && candidate.is_off_grid());
         is_best
     });
 }
@@ -113,10 +107,11 @@ pub(crate) fn clusters_of(candidates: &[Candidate], body: &RigidBody, radius: f6
     greedy(body, &poses, radius)
 }
 
-/// Which candidates, best first, may be rows: all but those within `step` (Å) of a better refined one of their cluster.
+/// Whether each candidate, best first, may be a row: all but those within `step` (Å) of a better refined one of their
+/// cluster.
 ///
-/// A refined pose has left the samples of the search and stands for those about it. They still count in its cluster,
-/// whose size says how broad the maximum is; a list of poses needs only one of them.
+/// A refined pose has left the samples of the search and represents those about it. They still count in its cluster,
+/// whose size shows how broad the maximum is; a list of poses needs only one of them.
 pub(crate) fn deduplicated(
     candidates: &[Candidate],
     clusters: &[usize],
@@ -124,20 +119,15 @@ pub(crate) fn deduplicated(
     step: f64,
 ) -> Vec<bool> {
     let count = clusters.iter().max().map_or(0, |last| last + 1);
-    let mut standing: Vec<Vec<PlacedBody>> = vec![Vec::new(); count];
-    candidates
-        .iter()
-        .zip(clusters)
-        .map(|(candidate, &cluster)| {
-            let others = &mut standing[cluster];
-            let near = body.first_within(others, &candidate.pose, step);
-            let is_distinct = near.is_none();
-            if is_distinct && candidate.is_off_grid() {
-                others.push(body.place(&candidate.pose));
-            }
-            is_distinct
-        })
-        .collect()
+    let mut kept: Vec<Vec<PlacedBody>> = vec![Vec::new(); count];
+    let is_distinct = |(candidate, &cluster): (&Candidate, &usize)| {
+        let near = body.first_within(&kept[cluster], &candidate.pose, step);
+        if near.is_none() && candidate.is_off_grid() {
+            kept[cluster].push(body.place(&candidate.pose));
+        }
+        near.is_none()
+    };
+    candidates.iter().zip(clusters).map(is_distinct).collect()
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@
 //! Here c1 and c2 are the images of the points' mean, and C is their covariance. The cost is O(1) for a pair of
 //! poses.
 
-use crate::pose_space::equivalents::Equivalents;
+use crate::pose_space::Equivalents;
 use knotdock_scoring::se3::Pose;
 use nalgebra::{Matrix3, Vector3};
 
@@ -13,11 +13,11 @@ use nalgebra::{Matrix3, Vector3};
 pub struct RigidBody {
     mean: Vector3<f64>,
     covariance: Matrix3<f64>,
-    /// Poses that are one with a pose.
+    /// The equivalents of a pose.
     equivalents: Equivalents,
 }
 
-/// A pose with what its distances to others need.
+/// A placed body, prepared for its distances to others.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedBody {
     center: Vector3<f64>,
@@ -30,14 +30,10 @@ impl RigidBody {
     /// The body of some points (Å); without any it is a single point at the origin.
     pub fn new(points: &[[f64; 3]]) -> Self {
         let count = points.len().max(1) as f64;
-        let mean = points
-            .iter()
-            .fold(Vector3::zeros(), |sum, &p| sum + Vector3::from(p))
-            / count;
-        let covariance = points.iter().fold(Matrix3::zeros(), |sum, &p| {
-            let d = Vector3::from(p) - mean;
-            sum + d * d.transpose()
-        }) / count;
+        let points = points.iter().map(|&point| Vector3::from(point));
+        let mean = points.clone().sum::<Vector3<f64>>() / count;
+        let squares = points.map(|point| (point - mean) * (point - mean).transpose());
+        let covariance = squares.sum::<Matrix3<f64>>() / count;
         Self {
             mean,
             covariance,
@@ -45,21 +41,21 @@ impl RigidBody {
         }
     }
 
-    /// The body in a space in which further poses are one with a pose.
-    pub fn with_equivalents(self, equivalents: Equivalents) -> Self {
+    /// The body in a space in which poses have equivalents.
+    pub(crate) fn with_equivalents(self, equivalents: Equivalents) -> Self {
         Self {
             equivalents,
             ..self
         }
     }
 
-    /// The body at all poses that are one with this one, itself first.
+    /// The body at a pose and its equivalents, itself first.
     fn images(&self, pose: &Pose) -> Vec<PlacedBody> {
         let poses = self.equivalents.of(pose);
         poses.map(|pose| self.place(&pose)).collect()
     }
 
-    /// The first of some placed bodies that a pose, or one that is one with it, lies within `distance` (Å RMSD) of.
+    /// The first of some placed bodies within `distance` (Å RMSD) of a pose or of its equivalents.
     pub fn first_within(&self, placed: &[PlacedBody], pose: &Pose, distance: f64) -> Option<usize> {
         let images = self.images(pose);
         placed.iter().position(|other| {
@@ -102,20 +98,18 @@ impl RigidBody {
     }
 }
 
-/// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose lies within `radius`
+/// Greedy clusters of poses given best first: each pose joins the first cluster whose best pose is within `radius`
 /// (Å RMSD), or becomes the centre of a new one. Returns each pose's cluster, numbered from 0 in that order.
 pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
     let mut centres: Vec<PlacedBody> = Vec::new();
-    poses
-        .iter()
-        .map(|pose| {
-            let near = body.first_within(&centres, pose, radius);
-            near.unwrap_or_else(|| {
-                centres.push(body.place(pose));
-                centres.len() - 1
-            })
+    let cluster = |pose: &Pose| {
+        let near = body.first_within(&centres, pose, radius);
+        near.unwrap_or_else(|| {
+            centres.push(body.place(pose));
+            centres.len() - 1
         })
-        .collect()
+    };
+    poses.iter().map(cluster).collect()
 }
 
 #[cfg(test)]

@@ -5,5 +5,4 @@ pub mod cluster;
 pub mod ranking;
 pub mod rescoring;
 pub mod sharp;
-pub mod term_counts;
 pub(crate) mod time_left;

@@ -4,11 +4,11 @@
 //! costs as much as a whole rotation of the search. So poses are merged and clustered by the fast path's values (the
 //! grid's, or the receptor field's where a pose was refined); rows of the table carry exact scores.
 //!
-//! Where poses are rescored, all this goes by the pose score: the sum of the score and the rescoring terms. For rings
-//! it includes what copies beyond the neighbours add.
+//! If poses are rescored, all this goes by the pose score: the sum of the score and the rescoring terms. For rings it
+//! includes the score of copies beyond the neighbours.
 //!
 //! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores s. This is the best pose's
-//! score where that pose stands alone. It is more where many good poses lie about it, as they do about a native one.
+//! score if that pose is alone. It is more if many good poses are about it, as they are about a native one.
 //! T is a tenth of the run's best score, sharp fits left out. On training pairs anything from a twentieth to a fifth
 //! ranked better than the best pose alone (docs/research/defaults.md).
 //!
@@ -39,7 +39,7 @@ pub(crate) struct PoseScorer<'a> {
     pub space: &'a PoseSpace,
     /// T of the clusters' scores, as a share of the run's best score.
     pub cluster_temperature: f64,
-    /// Whether rows carry what only the columns for diagnosis show.
+    /// Whether rows have the values of the columns for diagnosis.
     pub diagnostics: bool,
 }
 
@@ -48,7 +48,7 @@ pub(crate) struct PoseScorer<'a> {
 pub struct RankedPose {
     /// From the ligand's file frame to the receptor's.
     pub pose: Pose,
-    /// The score that orders the rows: `cluster_score` where rows are clusters, else `pose_score`.
+    /// The score that orders the rows: `cluster_score` if rows are clusters, else `pose_score`.
     pub score: f64,
     /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
     pub search_score: f64,
@@ -59,27 +59,26 @@ pub struct RankedPose {
     /// Score of that cluster, by which clusters are ordered: T ln sum exp(s / T) over its poses' pose scores, at
     /// least the best pose's.
     pub cluster_score: Option<f64>,
-    /// Whether refinement moved `pose` off the grid; not where the exact score did not confirm the ascent.
+    /// Whether refinement moved `pose` off the grid; not if the exact score did not confirm the ascent.
     pub refined: bool,
     /// Index in the rotation set of the grid pose that this row came from.
     pub rotation: usize,
     /// Score of that grid pose as the fast path computed it.
     pub score_grid: f64,
-    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` where the
+    /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` if the
     /// effect is off.
     pub terms: [Option<f64>; Effect::ALL.len()],
     /// Slices and unfiltered score of shape at `pose`; `None` without `--diagnostics`.
     pub shape: Option<ShapeParts>,
     /// Weighted values of the pose terms at `pose`, by id.
     pub pose_terms: TermValues,
-    /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` where there are none.
+    /// Score between copies of a ring that are no neighbours, for each pair of neighbours; `None` if there are none.
     pub other_copies: Option<f64>,
-    /// Its sharp fit; `None` where none was looked for.
+    /// Its sharp fit; `None` if none was made.
     pub sharp: Option<SharpPose>,
     /// Sum that ranks poses: `search_score`, the pose terms, `other_copies` and the score of the sharp fit.
     pub pose_score: f64,
-    /// Standard deviations that `pose_score` lies above the mean of the run's kept poses; `None` where they do not
-    /// differ.
+    /// Standard deviations of `pose_score` above the mean of the run's kept poses; `None` if they do not differ.
     pub z_score: Option<f64>,
 }
 
@@ -102,12 +101,11 @@ const ROWS_TOGETHER: usize = 8;
 pub(crate) fn report(
     pose_scorer: PoseScorer,
     candidates: &[Candidate],
-    clusters: (&[usize], &[bool]),
+    (clusters, distinct): (&[usize], &[bool]),
     every_pose: bool,
     margin: f64,
     progress: &dyn Progress,
 ) -> Ranking {
-    let (clusters, distinct) = clusters;
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
@@ -146,10 +144,8 @@ pub(crate) fn report(
     let mut seen = vec![false; count];
     for (row, cluster) in &rows {
         if !std::mem::replace(&mut seen[*cluster], true) {
-            order.push((
-                *cluster,
-                row.pose_score + temperature * weights[*cluster].ln(),
-            ));
+            let score = row.pose_score + temperature * weights[*cluster].ln();
+            order.push((*cluster, score));
         }
     }
     order.sort_by(|(_, a), (_, b)| b.total_cmp(a));
@@ -184,7 +180,7 @@ pub(crate) fn report(
 /// Mean and spread of the scores of the run's kept poses.
 struct Background {
     mean: f64,
-    /// Nothing where scores differ by no more than the fast path may be off by.
+    /// `None` if scores differ by no more than the error of the fast path.
     deviation: Option<f64>,
 }
 
@@ -227,10 +223,8 @@ impl Candidate {
         let (pose, terms, others, refined) = if self.refined {
             let (terms, beyond) = (scorer.terms(&self.pose), others(&self.pose));
             // An ascent on the fast path's values that the exact sum does not confirm is undone.
-            let before = match &self.terms {
-                Some(terms) => terms.score,
-                None => scorer.score_only(&self.start),
-            };
+            let known = self.terms.as_ref().map(|terms| terms.score);
+            let before = known.unwrap_or_else(|| scorer.score_only(&self.start));
             let start = others(&self.start);
             if terms.score + beyond.unwrap_or(0.0) >= before + start.unwrap_or(0.0) {
                 (self.pose, terms, beyond, true)

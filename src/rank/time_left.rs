@@ -11,7 +11,7 @@ use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::terms::pose::Rescorer;
 use std::time::Instant;
 
-/// Fewest poses that are kept, whatever the time: so many are scored already, for the error of the fast path.
+/// Fewest poses that are kept, whatever the time: this many are scored already, for the error of the fast path.
 pub(crate) const FEWEST: usize = 100;
 /// Poses that are rescored to see how long one takes.
 const PROBES: usize = 48;
@@ -31,7 +31,7 @@ pub(crate) fn poses_in_time(
         return count;
     }
     let rescoring = rescoring_seconds((peaks, placed), rescorer);
-    // Rows are exactly scored: one a cluster, about as many as there are by the search's own scores, or all.
+    // Rows are exactly scored: one per cluster, about as many as there are by the search's own scores, or all.
     let scored = if options.ranking.no_cluster {
         1.0
     } else {
@@ -59,9 +59,9 @@ pub(crate) fn rescoring_seconds(
     started.elapsed().as_secs_f64() / probed.max(1) as f64
 }
 
-/// How many poses of `count` fit into the seconds left, [`FEWEST`] at least.
+/// The number of `count` poses that fit into the seconds left, [`FEWEST`] at least.
 fn within(left: f64, each: f64, count: usize) -> usize {
-    // Rounding down; infinite where poses take no time.
+    // Rounding down; infinite if poses take no time.
     let fit = left / each;
     if fit >= count as f64 {
         return count;

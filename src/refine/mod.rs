@@ -2,7 +2,7 @@
 //!
 //! For each pose three stages follow one another. Each is kept only if it lowers the energy of the sharp fit
 //! ([`knotdock_scoring::sharp`]), so that no pose ends above where it began. None takes the ligand farther from the pose
-//! than [`RefineOptions::max_move`]: unbound molecules clash where they belong, and what is lowest is then elsewhere.
+//! than [`RefineOptions::max_move`]: unbound molecules clash in their place, and the lowest energy is then elsewhere.
 //!
 //! 1. The rigid optimum near the pose: that of [`SharpFit::best_near`] or, if it is too far, of [`SharpFit::descend`].
 //! 2. The side chains of the interface, packed for that place by their own energies ([`crate::side_chains`]).
@@ -17,12 +17,12 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::sharp::{Energy, Optimum, PairList, SharpFit};
 use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
-use knotdock_structures::molecule::Molecule;
+use knotdock_structures::molecule::{Atom, Molecule};
 use serde::Serialize;
 
 use crate::side_chains::{HeldResidue, RepackOptions, Repacker};
 
-/// What may change in a refinement.
+/// Options of a refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RefineOptions {
     /// Whether the ligand may move.
@@ -54,15 +54,15 @@ pub struct Refined {
     pub before: Energy,
     /// Energy of the refined one; its total is never above that of `before`.
     pub after: Energy,
-    /// Side chains of the interface that had to stay, and why; none where none were packed.
+    /// Side chains of the interface that had to stay, with the reasons; empty without packing.
     pub held: Vec<HeldResidue>,
-    /// What packing came to; `None` where there was none.
+    /// Outcome of packing; `None` if there was none.
     pub packing: Option<Packing>,
-    /// Receptor and ligand with the packed side chains, each in its own frame; `None` where all side chains stayed.
+    /// Receptor and ligand with the packed side chains, each in its own frame; `None` if all side chains stayed.
     pub packed: Option<[Molecule; 2]>,
 }
 
-/// What packing the side chains of a pose came to.
+/// Outcome of packing the side chains of a pose.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 pub struct Packing {
     /// Side chains that moved; 0 if packing did not lower the energy of the sharp fit and was undone.
@@ -80,16 +80,13 @@ struct Place {
 
 impl<'a> Refiner<'a> {
     /// Prepares receptor and ligand, each in its file's frame.
-    ///
-    /// # Errors
-    /// [`KnotsError`] when a molecule has no usable atom.
     pub fn new(molecules: [&'a Molecule; 2], options: RefineOptions) -> Result<Self, KnotsError> {
         let [receptor, ligand] = molecules;
-        let packs = options.side_chains;
+        let repacker = || Repacker::new(receptor, ligand, RepackOptions::default());
         Ok(Self {
             molecules,
             fit: sharp_fit(molecules, options.ph)?,
-            repacker: packs.then(|| Repacker::new(receptor, ligand, RepackOptions::default())),
+            repacker: options.side_chains.then(repacker),
             options,
         })
     }
@@ -138,7 +135,7 @@ impl<'a> Refiner<'a> {
         })
     }
 
-    /// The rigid optimum near a place; the place itself where none is lower and near enough to the pose that is refined.
+    /// The rigid optimum near a place; the place itself if none is lower and near enough to the pose that is refined.
     fn settled(&self, fit: &SharpFit, from: Place, pose: &Pose, list: &mut PairList) -> Place {
         if !self.options.moves {
             return from;
@@ -171,11 +168,11 @@ fn sharp_fit(molecules: [&Molecule; 2], ph: f64) -> Result<SharpFit, KnotsError>
 
 /// Root mean square distance in Å of a molecule's atoms between two poses; 0 without atoms.
 fn rmsd_between(molecule: &Molecule, one: &Pose, other: &Pose) -> f64 {
-    let square = |x: [f64; 3]| -> f64 {
-        let (a, b) = (one.apply(x), other.apply(x));
+    let atoms = &molecule.atoms;
+    let square = |atom: &Atom| -> f64 {
+        let (a, b) = (one.apply(atom.position), other.apply(atom.position));
         a.iter().zip(b).map(|(a, b)| (a - b).powi(2)).sum()
     };
-    let atoms = &molecule.atoms;
-    let squares: f64 = atoms.iter().map(|atom| square(atom.position)).sum();
+    let squares: f64 = atoms.iter().map(square).sum();
     (squares / atoms.len().max(1) as f64).sqrt()
 }

@@ -2,14 +2,12 @@
 //!
 //! A reagent has a line here only with a published bound.
 
-use std::fmt;
-use std::str::FromStr;
-
 use serde::de::Error;
-use serde::{Deserialize, Deserializer, Serialize, Serializer};
+use serde::{Deserialize, Deserializer, Serialize};
 
 /// A cross-linking reagent.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize)]
+#[serde(into = "String")]
 pub struct Crosslink {
     /// Usual name, such as `DSS`.
     pub name: &'static str,
@@ -50,41 +48,34 @@ pub(super) fn names() -> String {
     CROSSLINKS.map(|crosslink| crosslink.name).join(", ")
 }
 
-impl FromStr for Crosslink {
-    type Err = String;
+impl TryFrom<String> for Crosslink {
+    type Error = String;
 
     /// Finds a reagent by one of its names, whatever their case and blanks.
-    fn from_str(name: &str) -> Result<Self, String> {
+    fn try_from(name: String) -> Result<Self, String> {
         let plain = |name: &str| name.replace(char::is_whitespace, "").to_lowercase();
-        let wanted = plain(name);
-        let mut crosslinks = CROSSLINKS.into_iter();
-        crosslinks
-            .find(|crosslink| {
-                let mut names = crosslink.aliases.iter().chain([&crosslink.name]);
-                names.any(|name| plain(name) == wanted)
-            })
-            .ok_or_else(|| {
-                let known = names();
-                format!("there is no preset for the cross-links of `{name}`; there are {known}")
-            })
-    }
-}
-
-impl Serialize for Crosslink {
-    fn serialize<S: Serializer>(&self, to: S) -> Result<S::Ok, S::Error> {
-        to.serialize_str(self.name)
+        let sought = plain(&name);
+        let is_named = |crosslink: &Self| {
+            let mut names = crosslink.aliases.iter().chain([&crosslink.name]);
+            names.any(|name| plain(name) == sought)
+        };
+        CROSSLINKS.into_iter().find(is_named).ok_or_else(|| {
+            let known = names();
+            format!("there is no preset for the cross-links of `{name}`; there are {known}")
+        })
     }
 }
 
 impl<'de> Deserialize<'de> for Crosslink {
     fn deserialize<D: Deserializer<'de>>(from: D) -> Result<Self, D::Error> {
-        String::deserialize(from)?.parse().map_err(D::Error::custom)
+        let name = String::deserialize(from)?;
+        name.try_into().map_err(D::Error::custom)
     }
 }
 
-impl fmt::Display for Crosslink {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name)
+impl From<Crosslink> for String {
+    fn from(crosslink: Crosslink) -> Self {
+        crosslink.name.to_owned()
     }
 }
 
@@ -95,19 +86,19 @@ mod tests {
     #[test]
     fn reagents_are_found_by_any_name() {
         for crosslink in CROSSLINKS {
-            assert_eq!(crosslink.to_string().parse(), Ok(crosslink));
+            assert_eq!(String::from(crosslink).try_into(), Ok(crosslink));
             for name in crosslink.aliases {
-                assert_eq!(name.to_uppercase().parse(), Ok(crosslink));
+                assert_eq!(name.to_uppercase().try_into(), Ok(crosslink));
             }
             assert!(crosslink.upper > 0.0 && crosslink.source.contains("doi:"));
         }
-        let found: Crosslink = "bs3".parse().unwrap();
+        let found = Crosslink::try_from("bs3".to_owned()).unwrap();
         assert_eq!((found.atom, found.upper), ("CA", 30.0));
     }
 
     #[test]
     fn unknown_reagents_are_refused_with_the_list() {
-        let error = "XYZ".parse::<Crosslink>().unwrap_err();
+        let error = Crosslink::try_from("XYZ".to_owned()).unwrap_err();
         assert_eq!(
             error,
             "there is no preset for the cross-links of `XYZ`; there are DSS, BS3"

@@ -1,4 +1,4 @@
-//! Any bytes are read or refused, and what is written as a file says comes back.
+//! Any bytes are read or refused, and restraints that are written as a file come back.
 
 use knotdock_structures::molecule::Molecule;
 use proptest::prelude::*;
@@ -44,7 +44,7 @@ fn check(restraint: &NamedRestraint, molecules: [&Molecule; 2]) {
     assert!(restraint.upper > 0.0 && restraint.upper.is_finite());
 }
 
-/// Words of both formats, so that many mixtures come near to what is read.
+/// Words of both formats, so that many mixtures come near to valid files.
 fn word() -> impl Strategy<Value = String> {
     let words = [
         "assign", "resid", "segid", "name", "resname", "chain", "atom", "all", "and", "or", "not",

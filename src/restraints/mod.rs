@@ -3,10 +3,10 @@
 //! # Conventions
 //!
 //! - Distances are in Å. Atoms are indices into the atoms of the receptor and of the ligand, in that order.
-//! - A restraint is on the effective distance (sum of d^-6)^(-1/6) over all its pairs of atoms. It is satisfied where
+//! - A restraint is on the effective distance (sum of d^-6)^(-1/6) over all its pairs of atoms. It is satisfied if
 //!   lower <= effective distance <= upper.
-//! - A residue stands for its heavy atoms. Hydrogens count where nothing else is named, as in `name HN`. Bounds of a
-//!   `.tbl` are of all atoms, and are widened for that.
+//! - A residue means its heavy atoms. Hydrogens count if nothing else is named, as in `name HN`. Bounds of a `.tbl` are of
+//!   all atoms, and are widened for that.
 //!
 //! # Files
 //!
@@ -36,12 +36,12 @@ use serde::{Deserialize, Serialize};
 
 use crate::bounded_read::{MAX_RESTRAINTS, read_bounded_text};
 
-/// A file of restraints as it was read. Which atoms it names depends on the molecules.
+/// A file of restraints as it was read. Its atoms depend on the molecules.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct RestraintFile {
     /// Its name.
     pub path: PathBuf,
-    /// What it holds.
+    /// Its content.
     pub text: String,
 }
 
@@ -72,15 +72,11 @@ impl RestraintFile {
         crosslink: Option<Crosslink>,
         bounds: TblBounds,
     ) -> Result<FileRestraints, Error> {
-        parse(&self.text, is_tbl(&self.path), molecules, crosslink, bounds)
-            .map_err(|error| error.at(&self.path))
+        let ending = self.path.extension();
+        let is_tbl = ending.is_some_and(|ending| ending.eq_ignore_ascii_case("tbl"));
+        let restraints = parse(&self.text, is_tbl, molecules, crosslink, bounds);
+        restraints.map_err(|error| error.at(&self.path))
     }
-}
-
-/// Whether the name of a file says that it holds assign statements.
-fn is_tbl(path: &Path) -> bool {
-    path.extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("tbl"))
 }
 
 /// The restraints of a file's text.
@@ -100,7 +96,8 @@ fn parse(
         .help("leave out --crosslink, or give the cross-links as a CSV table")),
         (true, None) => tbl::parse(&text, molecules, bounds),
         (false, _) => {
-            table::parse(text.into_bytes(), molecules, crosslink).map(|list| FileRestraints {
+            let list = table::parse(text.into_bytes(), molecules, crosslink);
+            list.map(|list| FileRestraints {
                 list,
                 within_one_molecule: 0,
             })

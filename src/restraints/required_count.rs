@@ -1,7 +1,6 @@
 //! How many of several restraints have to be satisfied.
 
 use std::fmt;
-use std::str::FromStr;
 
 use serde::{Deserialize, Serialize};
 
@@ -9,22 +8,22 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "String", into = "String")]
 pub enum RequiredCount {
-    /// So many, at least one.
+    /// A number, at least one.
     Count(usize),
     /// A share above 0, up to 1 for all.
     Share(f64),
 }
 
-/// The forms of a text that says how many.
+/// The forms of its text.
 const FORMS: &str = "a number of restraints such as 3, or a share of them such as 60% or 0.6";
 
 impl RequiredCount {
-    /// How many of `count` restraints that is: at least one of them where there are any. `None` where it is more than
-    /// there are.
+    /// The number of `count` restraints that have to be satisfied, at least one if there are any. `None` if there are
+    /// fewer.
     pub fn of(self, count: usize) -> Option<usize> {
         let needed = match self {
             Self::Count(needed) => needed,
-            // Rounding must not ask for one more, as 0.6 of 5 would.
+            // Rounding must not add one, as for 0.6 of 5.
             Self::Share(share) => ((share * count as f64 - 1e-9).ceil() as usize).max(count.min(1)),
         };
         (needed <= count).then_some(needed)
@@ -37,10 +36,10 @@ impl Default for RequiredCount {
     }
 }
 
-impl FromStr for RequiredCount {
-    type Err = &'static str;
+impl TryFrom<String> for RequiredCount {
+    type Error = &'static str;
 
-    fn from_str(text: &str) -> Result<Self, Self::Err> {
+    fn try_from(text: String) -> Result<Self, Self::Error> {
         let share = |text: &str, whole: f64| {
             let share = text.trim().parse().map(|number: f64| number / whole);
             let share = share.ok().filter(|share| *share > 0.0 && *share <= 1.0);
@@ -48,7 +47,7 @@ impl FromStr for RequiredCount {
         };
         match text.strip_suffix('%') {
             Some(percent) => share(percent, 100.0),
-            None if text.contains('.') => share(text, 1.0),
+            None if text.contains('.') => share(&text, 1.0),
             None => match text.trim().parse() {
                 Ok(0) | Err(_) => Err(FORMS),
                 Ok(count) => Ok(Self::Count(count)),
@@ -72,14 +71,6 @@ impl From<RequiredCount> for String {
     }
 }
 
-impl TryFrom<String> for RequiredCount {
-    type Error = &'static str;
-
-    fn try_from(text: String) -> Result<Self, Self::Error> {
-        text.parse()
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -95,16 +86,17 @@ mod tests {
             ("0.001", Some(1), "0.1%"),
             ("6", None, "6"),
         ] {
-            let needed: RequiredCount = text.parse().unwrap();
+            let needed = RequiredCount::try_from(text.to_owned()).unwrap();
             assert_eq!(needed.of(5), of_five, "{text}");
             assert_eq!(needed.to_string(), written);
-            assert_eq!(written.parse(), Ok(needed));
+            assert_eq!(written.to_owned().try_into(), Ok(needed));
         }
         assert_eq!(RequiredCount::default().of(0), Some(0));
         for text in [
             "", "0", "0%", "0.0", "-1", "101%", "1.5", "nan", "all", "3 of 5", "inf%",
         ] {
-            assert_eq!(text.parse::<RequiredCount>(), Err(FORMS), "{text}");
+            let read = RequiredCount::try_from(text.to_owned());
+            assert_eq!(read, Err(FORMS), "{text}");
         }
     }
 }

@@ -1,4 +1,4 @@
-//! Restraints as read, their bounds, and how many atoms they may hold.
+//! Restraints as read, their bounds, and a limit on their atoms.
 
 use knotdock_scoring::terms::pose::DistanceRestraint;
 use knotdock_structures::Error;
@@ -11,11 +11,11 @@ use crate::table_text::named_columns::shortened;
 pub struct FileRestraints {
     /// Those between the two.
     pub list: Vec<NamedRestraint>,
-    /// How many more are, or may be, within one of them, and are left out: rigid docking keeps their distances.
+    /// Number of restraints that are, or may be, within one of them. They are left out: rigid docking keeps their distances.
     pub within_one_molecule: usize,
 }
 
-/// How upper bounds of a `.tbl` are taken.
+/// Use of the upper bounds of a `.tbl`.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TblBounds {
@@ -38,7 +38,7 @@ pub struct NamedRestraint {
     pub pairs: Vec<[Vec<usize>; 2]>,
     /// Smallest effective distance that satisfies it, in Å.
     pub lower: f64,
-    /// Most likely distance, in Å, where the file gives one.
+    /// Most likely distance, in Å, if the file gives one.
     pub target: Option<f64>,
     /// Largest effective distance that satisfies it, in Å.
     pub upper: f64,
@@ -47,7 +47,7 @@ pub struct NamedRestraint {
 }
 
 impl NamedRestraint {
-    /// What scores: atoms and bounds.
+    /// Its atoms and bounds, which score.
     pub fn distance(&self) -> DistanceRestraint {
         DistanceRestraint {
             pairs: self.pairs.clone(),
@@ -70,16 +70,16 @@ impl SelectedAtoms {
     pub(super) fn add(&mut self, pair: &[Vec<usize>; 2]) -> Result<(), Error> {
         self.0 += pair[0].len() + pair[1].len();
         if self.0 > MAX_SELECTED {
-            return Err(Error::input(format!(
-                "the restraints hold more than {MAX_SELECTED} atoms in all"
-            ))
-            .help("select residues or atoms in place of whole chains"));
+            let message = format!("the restraints hold more than {MAX_SELECTED} atoms in all");
+            return Err(
+                Error::input(message).help("select residues or atoms in place of whole chains")
+            );
         }
         Ok(())
     }
 }
 
-/// Largest distance that is taken, in Å: far beyond any molecule, and its sixth power is a number.
+/// Largest distance in a file, in Å: far beyond any molecule, and its sixth power is finite.
 const MAX_DISTANCE: f64 = 1e10;
 
 /// Bounds of an effective distance, in Å: 0 <= lower <= target <= upper, and upper is above 0.
@@ -123,18 +123,16 @@ impl Bounds {
 }
 
 /// A distance as written, in Å.
-pub(super) fn distance(what: &str, text: &str) -> Result<f64, Error> {
-    let number = text.parse().ok();
-    number
-        .filter(|number| (0.0..=MAX_DISTANCE).contains(number))
-        .map(|number: f64| number + 0.0) // + 0.0 turns a negative zero into 0
-        .ok_or_else(|| {
-            Error::input(format!(
-                "{what} is `{}`; it must be a number of Å from 0 to {MAX_DISTANCE}",
-                shortened(text)
-            ))
-            .help("write the number with a decimal point, as in 8.5")
-        })
+pub(super) fn distance(name: &str, text: &str) -> Result<f64, Error> {
+    match text.parse() {
+        // + 0.0 turns a negative zero into 0.
+        Ok(number) if (0.0..=MAX_DISTANCE).contains(&number) => Ok(number + 0.0),
+        _ => Err(Error::input(format!(
+            "{name} is `{}`; it must be a number of Å from 0 to {MAX_DISTANCE}",
+            shortened(text)
+        ))
+        .help("write the number with a decimal point, as in 8.5")),
+    }
 }
 
 #[cfg(test)]

@@ -10,7 +10,7 @@ use crate::table_text::named_columns::{listed, shortened};
 /// Remedy for a field that names no residues of the molecule.
 const RESIDUES: &str = "name residues by chain and number, as in A:57, A:52A or A:1-50, and atoms as in A:57.CA; a chain \
     without a name is _";
-/// Remedy for atoms that the molecule does not have.
+/// Remedy for atoms that the molecule lacks.
 pub(super) const NO_ATOM: &str = "correct the names and numbers. What the file of the molecule lacks, or the options \
     leave out, cannot be restrained: hydrogens need --hydrogens keep";
 
@@ -19,7 +19,7 @@ pub(super) struct SideAtoms<'a> {
     molecule: &'a Molecule,
     /// `receptor` or `ligand`.
     side: &'static str,
-    /// The atom that stands for a residue; all heavy atoms where there is none.
+    /// The atom that represents a residue; `None` for all heavy atoms.
     residue_atom: Option<&'static str>,
     /// Fields that were read: those of a group name one residue in many rows.
     known: HashMap<String, Vec<usize>>,
@@ -40,14 +40,13 @@ impl<'a> SideAtoms<'a> {
     }
 
     /// The atoms that a field names, rising. Parts with commas or semicolons between are residues as in
-    /// [`ResidueSelection`], each perhaps with the name of an atom behind a full stop.
+    /// [`ResidueSelection`], each perhaps with the name of an atom after a full stop.
     pub(super) fn read(&mut self, field: &str) -> Result<Vec<usize>, Error> {
-        if let Some(atoms) = self.known.get(field) {
-            return Ok(atoms.clone());
+        if !self.known.contains_key(field) {
+            let atoms = self.parse(field)?;
+            self.known.insert(field.to_owned(), atoms);
         }
-        let atoms = self.parse(field)?;
-        self.known.insert(field.to_owned(), atoms.clone());
-        Ok(atoms)
+        Ok(self.known[field].clone())
     }
 
     /// Number of fields that were looked up.
@@ -68,10 +67,8 @@ impl<'a> SideAtoms<'a> {
         let selection = residues.join(",").parse::<ResidueSelection>();
         let selection = selection.map_err(|_| {
             let (side, text) = (self.side, shortened(field));
-            Error::input(format!(
-                "{side} is `{text}`, which does not name residues or atoms"
-            ))
-            .help(RESIDUES)
+            let message = format!("{side} is `{text}`, which does not name residues or atoms");
+            Error::input(message).help(RESIDUES)
         })?;
         let mut chosen = vec![false; self.molecule.atoms.len()];
         for (part, name) in selection.parts().zip(names) {
@@ -89,10 +86,8 @@ impl<'a> SideAtoms<'a> {
         let selected = selected.map_err(|unknown| {
             let (side, residue) = (self.side, shortened(&unknown.part));
             let present = unknown.present();
-            Error::input(format!(
-                "the {side} has no residue {residue}; it has {present}"
-            ))
-            .help(RESIDUES)
+            let message = format!("the {side} has no residue {residue}; it has {present}");
+            Error::input(message).help(RESIDUES)
         })?;
         let of_residues: Vec<usize> = (0..atoms.len()).filter(|&index| selected[index]).collect();
         let Some(name) = name.or(self.residue_atom) else {
@@ -102,18 +97,12 @@ impl<'a> SideAtoms<'a> {
         let named: Vec<usize> = of_residues.iter().copied().filter(is_named).collect();
         match of_residues.first() {
             Some(&first) if named.is_empty() => {
-                let of_first = of_residues
-                    .iter()
-                    .map(|&index| &atoms[index])
-                    .filter(|atom| residue(atom) == residue(&atoms[first]));
-                Err(Error::input(format!(
-                    "{} of the {} has no atom {}; it has {}",
-                    residue(&atoms[first]),
-                    self.side,
-                    shortened(name),
-                    listed(of_first.map(|atom| atom.name.as_str()))
-                ))
-                .help(NO_ATOM))
+                let (own, side, name) = (residue(&atoms[first]), self.side, shortened(name));
+                let others = of_residues.iter().map(|&index| &atoms[index]);
+                let of_own = others.filter(|atom| residue(atom) == own);
+                let present = listed(of_own.map(|atom| atom.name.as_str()));
+                let message = format!("{own} of the {side} has no atom {name}; it has {present}");
+                Err(Error::input(message).help(NO_ATOM))
             }
             _ => Ok(named),
         }

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Columns go by their names, in any order. `receptor` and `ligand` are needed, and `upper` unless a preset gives it.
-//! `lower` is 0 where there is none. Rows of one group are alternatives of one restraint, and all their bounds are
+//! `lower` is 0 by default. Rows of one group are alternatives of one restraint, and all their bounds are
 //! equal. Lines that begin with `#` and blank ones are skipped. Columns may be separated as spreadsheets save them, by
 //! commas, semicolons or tabs.
 
@@ -89,12 +89,12 @@ impl<'a> Rows<'a> {
         if let Some(known) = self.groups.get_mut(group) {
             let restraint = &mut self.restraints[known.restraint];
             if known.bounds != bounds {
-                return Err(Error::input(format!(
-                    "the bounds differ from those of group `{}` on line {}",
-                    shortened(group),
-                    restraint.line
-                ))
-                .help("give all rows of a group the same lower, target and upper, since they are one restraint"));
+                let (group, line) = (shortened(group), restraint.line);
+                let message =
+                    format!("the bounds differ from those of group `{group}` on line {line}");
+                return Err(Error::input(message).help(
+                    "give all rows of a group the same lower, target and upper, since they are one restraint",
+                ));
             }
             if known.pairs.insert(pair.clone()) {
                 self.selected.add(&pair)?;
@@ -127,21 +127,21 @@ impl<'a> Rows<'a> {
     }
 
     fn bounds(&self, lower: &str, target: &str, upper: &str) -> Result<Bounds, Error> {
-        let optional = |what: &str, text: &str| -> Result<Option<f64>, Error> {
-            (!text.is_empty()).then(|| distance(what, text)).transpose()
+        let optional = |column: &str, text: &str| -> Result<Option<f64>, Error> {
+            (!text.is_empty())
+                .then(|| distance(column, text))
+                .transpose()
         };
         let preset = self.crosslink.map(|crosslink| crosslink.upper);
         let upper = optional("upper", upper)?.or(preset);
-        Bounds::new(
-            optional("lower", lower)?.unwrap_or(0.0),
-            optional("target", target)?,
-            upper.ok_or_else(|| {
-                Error::input("the row has no upper").help(format!(
-                    "give the largest distance in Å, or the reagent of cross-links with --crosslink: {}",
-                    crosslink::names()
-                ))
-            })?,
-        )
+        let (lower, target) = (optional("lower", lower)?, optional("target", target)?);
+        let upper = upper.ok_or_else(|| {
+            Error::input("the row has no upper").help(format!(
+                "give the largest distance in Å, or the reagent of cross-links with --crosslink: {}",
+                crosslink::names()
+            ))
+        })?;
+        Bounds::new(lower.unwrap_or(0.0), target, upper)
     }
 }
 

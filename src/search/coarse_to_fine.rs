@@ -3,10 +3,9 @@
 //! Each rotation of the finer set belongs to the nearest rotation of the coarse one, in whose *cell* it lies. The
 //! coarse rotations' cells are searched in the order of their best peaks, until a given share of the finer set has
 //! been. In a searched cell the best peaks of all its rotations, coarse and fine, replace the coarse rotation's own.
-//! They are as many and as widely spaced, so the list of poses keeps its length and its spread, with better poses in
+//! They have the same number and spacing, so the list of poses keeps its length and its spread, with better poses in
 //! its best regions. (Keeping every fine peak would fill the list with copies of the best few.)
 
-use crate::pose_space::rotations::RotationSample;
 use crate::progress::Progress;
 use crate::search::plan::SearchPlan;
 use crate::search::scan::scan;
@@ -27,21 +26,14 @@ pub struct FineSearched {
 }
 
 /// Searches the finer rotations about the best of `coarse`, peaks best first. Returned are the best peaks of both,
-/// best first, and what was searched.
-///
-/// # Errors
-/// As [`scan`].
+/// best first, and the coverage.
 pub(crate) fn search_finer(
     plan: &SearchPlan,
     engine: &ScanEngine,
     coarse: Vec<Peak>,
     progress: &dyn Progress,
 ) -> Result<(Vec<Peak>, FineSearched), Error> {
-    let RotationSample {
-        coarse: set,
-        fine: fine_set,
-        ..
-    } = &plan.rotations;
+    let (set, fine_set) = (&plan.rotations.coarse, &plan.rotations.fine);
     let cell_of = nearest(fine_set, set);
     let mut sizes = vec![0usize; set.len()];
     for &cell in &cell_of {
@@ -60,9 +52,8 @@ pub(crate) fn search_finer(
             cells += 1;
         }
     }
-    let groups = plan
-        .rotations
-        .fine_groups(|index| chosen[cell_of[index] as usize]);
+    let is_chosen = |index: usize| chosen[cell_of[index] as usize];
+    let groups = plan.rotations.fine_groups(is_chosen);
     progress.stage("fine", rotations as u64);
     let mut crowded = scan(plan, engine, &groups, usize::MAX, None, progress)?.peaks;
 
@@ -70,9 +61,8 @@ pub(crate) fn search_finer(
         Some(index) => cell_of[index],
         None => peak.rotation,
     };
-    let (from_coarse, mut peaks): (Vec<Peak>, Vec<Peak>) = coarse
-        .into_iter()
-        .partition(|peak| chosen[peak.rotation as usize]);
+    let is_searched = |peak: &Peak| chosen[peak.rotation as usize];
+    let (from_coarse, mut peaks): (Vec<_>, Vec<_>) = coarse.into_iter().partition(is_searched);
     crowded.reserve_exact(from_coarse.len());
     crowded.extend(from_coarse);
     crowded.sort_unstable_by(|a, b| cell(a).cmp(&cell(b)).then(a.order(b)));
@@ -82,27 +72,23 @@ pub(crate) fn search_finer(
         engine.cpu.position_after(half_turn, voxel)
     };
     for group in crowded.chunk_by(|a, b| cell(a) == cell(b)) {
-        peaks.extend(spaced(
-            group,
-            plan.per_rotation,
-            plan.engine.spacing(),
-            position,
-        ));
+        let spacing = plan.engine.spacing();
+        peaks.extend(spaced(group, plan.per_rotation, spacing, position));
     }
     peaks.sort_unstable_by(Peak::order);
     peaks.truncate(plan.kept);
     Ok((peaks, FineSearched { rotations, cells }))
 }
 
-/// The first `count` peaks, best first, that lie farther from those before them than neighbours of one rotation's
-/// peaks may.
+/// The first `count` peaks, best first, that are farther from those before them than neighbours of one rotation's peaks
+/// may be.
 fn spaced(
     peaks: &[Peak],
     count: usize,
     spacing: f64,
     position: impl Fn(&Peak) -> Vector3<f64>,
 ) -> Vec<Peak> {
-    // Half a voxel over: positions of different images lie between one another's voxels, and the grid's axes may lie
+    // Half a voxel over: positions of different images are between one another's voxels, and the grid's axes may be
     // askew in the file.
     let least = (NEIGHBOURS as f64 + 0.5) * spacing;
     let mut kept: Vec<(Vector3<f64>, Peak)> = Vec::with_capacity(count.min(peaks.len()));

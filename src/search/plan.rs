@@ -1,13 +1,13 @@
-//! Plan of a search: what it covers, where it runs and what it keeps.
+//! Plan of a search.
 
 use crate::options::{DockOptions, EngineChoice};
 use crate::pose_space::PoseSpace;
 use crate::pose_space::rotations::RotationSample;
-use crate::search::allowed::{Allowed, Known};
+use crate::search::allowed::{Allowed, SearchRestraints};
 use knotdock_scoring::engine::Plan;
 use std::sync::Arc;
 
-/// Plan of a search: what it covers, where it runs and what it keeps.
+/// Plan of a search: its space, its device and the number of its peaks.
 #[derive(Clone, Debug)]
 pub struct SearchPlan {
     /// Grid, modes and terms of the correlations.
@@ -28,29 +28,26 @@ pub struct SearchPlan {
     pub stop_after: Option<usize>,
     /// Rotations in flight at once.
     pub in_flight: usize,
-    /// What correlates.
+    /// The device that correlates.
     pub device: EngineChoice,
     /// Bytes of the graphics processor's memory that rotations in flight may take; 0 on the CPU.
     pub graphics_bytes: u64,
 }
 
 impl SearchPlan {
-    /// A search by the options and what is known of the translations, with so many
-    /// rotations in flight and so much graphics memory.
+    /// A search by the options and the restraints, with the number of rotations in flight and the bytes of graphics memory.
     pub fn new(
         engine: Arc<Plan>,
         space: PoseSpace,
         options: &DockOptions,
-        known: Known,
+        restraints: SearchRestraints,
         (in_flight, graphics_bytes): (usize, u64),
     ) -> Self {
-        let rotations = space.rotations(
-            &engine,
-            (options.search.rotations, options.search.fine_rotations),
-        );
+        let counts = (options.search.rotations, options.search.fine_rotations);
+        let rotations = space.rotations(&engine, counts);
         let step = space.step(rotations.covering_radius);
         Self {
-            allowed: Allowed::new(known, &engine, step),
+            allowed: Allowed::new(restraints, &engine, step),
             rotations,
             engine,
             space,

@@ -28,7 +28,7 @@ pub(crate) struct Scanned {
     pub rotations: usize,
 }
 
-/// The best `most` peaks over the rotations given: over the first of them, where a deadline comes before the last.
+/// The best `most` peaks over the rotations given: over the first of them, if a deadline comes before the last.
 ///
 /// # Errors
 /// [`Error`] if the graphics processor fails, and if `progress` ends the run.
@@ -43,17 +43,12 @@ pub(crate) fn scan(
     // No list grows beyond all peaks that there are.
     let most = most.min(plan.rotations.images * groups.len() * plan.per_rotation);
     let at_least = |least| scan_on_cores(plan, engine, groups, (most, least), deadline, progress);
-    // What is known of the translations may leave nothing but overlap at most rotations. Poses that score less than
-    // the two bodies apart are then kept only where there are no others.
+    // At most rotations, the restraints may allow only overlapping poses. Poses that score less than the two bodies apart
+    // are then kept only if there are no others.
     let on_cores = || {
-        let scanned = at_least(match plan.allowed {
-            Some(_) => 0.0,
-            None => f64::NEG_INFINITY,
-        });
-        match plan.allowed {
-            Some(_) if scanned.peaks.is_empty() => at_least(f64::NEG_INFINITY),
-            _ => scanned,
-        }
+        let restrained = plan.allowed.as_ref().map(|_| at_least(0.0));
+        let scanned = restrained.filter(|scanned| !scanned.peaks.is_empty());
+        scanned.unwrap_or_else(|| at_least(f64::NEG_INFINITY))
     };
     #[cfg(feature = "gpu")]
     let mut scanned = match &engine.gpu {
@@ -107,8 +102,8 @@ fn scan_on_card(
     })
 }
 
-/// Peaks of the CPU's cores that score `least` or more, the best `most` of each thread among them. The groups that are searched are the first
-/// ones, at least one, whatever the threads: each takes the next one and searches it to its end.
+/// Peaks of the CPU's cores that score `least` or more, the best `most` of each thread among them. The groups that are
+/// searched are the first ones, at least one, for any number of threads: each takes the next one and searches it to its end.
 fn scan_on_cores(
     plan: &SearchPlan,
     engine: &ScanEngine,
@@ -141,7 +136,7 @@ fn scan_on_cores(
             let mut work = engine.workspace_of(plan.rotations.images);
             let mut regions: [Region; IMAGES] = Default::default();
             let mut found = Vec::with_capacity(2 * most + plan.per_rotation);
-            // What scores less is not kept whatever else is found.
+            // Peaks that score less are never kept.
             let mut floor = least;
             while let Some(group) = take() {
                 let (rotation, _) = plan.rotations.rotation(group.first);

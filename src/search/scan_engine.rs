@@ -26,8 +26,8 @@ pub struct Adapter {
     pub rotations_in_flight: usize,
 }
 
-/// Names the user's runtime folder where the environment does not, as it does not in many containers: graphics drivers
-/// look there for a display and write `error: XDG_RUNTIME_DIR` on the terminal without it. None is needed.
+/// Sets the runtime folder if the environment lacks it, as in many containers: without it graphics drivers, which search it
+/// for a display, write `error: XDG_RUNTIME_DIR` on the terminal. None is needed.
 ///
 /// To be called before the program has other threads.
 pub fn name_runtime_folder() {
@@ -41,23 +41,23 @@ pub fn name_runtime_folder() {
     }
 }
 
-/// An engine that is ready to scan.
+/// The engines of a scan.
 pub(crate) struct ScanEngine {
-    /// Maps voxels to places, and scans where there is nothing else to.
+    /// Maps voxels to places, and scans without a graphics processor.
     pub cpu: CpuEngine,
     #[cfg(feature = "gpu")]
     pub gpu: Option<GpuEngine>,
     /// The graphics processor in use.
     pub adapter: Option<Adapter>,
-    /// Rotations in flight on the CPU: the plan's, or fewer where the engine needs more memory than was planned.
+    /// Rotations in flight on the CPU: the plan's, or fewer if the engine needs more memory than was planned.
     pub in_flight: usize,
 }
 
 impl ScanEngine {
     /// The pose of a peak, as the grid has it.
     pub fn grid_pose(&self, plan: &SearchPlan, peak: &Peak) -> Pose {
-        let (rotation, half_turn) = plan.rotations.rotation(peak.rotation as usize);
-        let position = self.cpu.position_after(half_turn, peak.voxel as usize);
+        let (rotation, turn) = plan.rotations.rotation(peak.rotation as usize);
+        let position = self.cpu.position_after(turn, peak.voxel as usize);
         let place = plan.engine.receptor_center() + position;
         Pose::about(rotation, plan.engine.ligand_center(), place)
     }
@@ -70,60 +70,41 @@ pub(super) fn no_graphics(error: impl std::fmt::Display) -> Error {
     )
 }
 
-#[cfg(feature = "gpu")]
 impl ScanEngine {
-    /// Takes an engine to where the plan wants it.
-    ///
-    /// # Errors
-    /// [`Error`] if there is no graphics processor, or it cannot be used.
+    /// The engines of a plan.
     pub fn new(plan: &SearchPlan, cpu: CpuEngine) -> Result<Self, Error> {
-        if plan.device == EngineChoice::Cpu {
-            return Ok(Self {
-                cpu,
-                gpu: None,
-                adapter: None,
-                in_flight: plan.in_flight,
-            });
+        let mut engine = Self {
+            cpu,
+            #[cfg(feature = "gpu")]
+            gpu: None,
+            adapter: None,
+            in_flight: plan.in_flight,
+        };
+        if plan.device == EngineChoice::Gpu {
+            engine.open_gpu(plan)?;
         }
-        let wanted = std::env::var(ADAPTER_VARIABLE).ok();
-        let device = GpuDevice::open(wanted.as_deref()).map_err(no_graphics)?;
-        let gpu = GpuEngine::new(
-            &device,
-            &cpu,
-            plan.per_rotation,
-            NEIGHBOURS,
-            plan.graphics_bytes,
-        )
-        .map_err(no_graphics)?;
-        let adapter = Adapter {
+        Ok(engine)
+    }
+
+    #[cfg(feature = "gpu")]
+    fn open_gpu(&mut self, plan: &SearchPlan) -> Result<(), Error> {
+        let name = std::env::var(ADAPTER_VARIABLE).ok();
+        let device = GpuDevice::open(name.as_deref()).map_err(no_graphics)?;
+        let (count, bytes) = (plan.per_rotation, plan.graphics_bytes);
+        let gpu = GpuEngine::new(&device, &self.cpu, count, NEIGHBOURS, bytes);
+        let gpu = gpu.map_err(no_graphics)?;
+        self.adapter = Some(Adapter {
             name: device.name().to_owned(),
             backend: device.backend(),
             software: device.is_software(),
             rotations_in_flight: gpu.in_flight(),
-        };
-        Ok(Self {
-            cpu,
-            gpu: Some(gpu),
-            adapter: Some(adapter),
-            in_flight: plan.in_flight,
-        })
+        });
+        self.gpu = Some(gpu);
+        Ok(())
     }
-}
 
-#[cfg(not(feature = "gpu"))]
-impl ScanEngine {
-    /// The engine as it is.
-    ///
-    /// # Errors
-    /// [`Error`] for a graphics processor, which this build cannot use.
-    pub fn new(plan: &SearchPlan, cpu: CpuEngine) -> Result<Self, Error> {
-        match plan.device {
-            EngineChoice::Cpu => Ok(Self {
-                cpu,
-                adapter: None,
-                in_flight: plan.in_flight,
-            }),
-            EngineChoice::Gpu => Err(no_graphics("this build was made without the feature `gpu`")),
-        }
+    #[cfg(not(feature = "gpu"))]
+    fn open_gpu(&mut self, _: &SearchPlan) -> Result<(), Error> {
+        Err(no_graphics("this build was made without the feature `gpu`"))
     }
 }

@@ -1,14 +1,14 @@
-//! Schedule of the rotations: which are searched, in which order, and until when.
+//! Schedule of the rotations: those that are searched, in their order.
 //!
-//! A search within a time stops between two rotations. What it has searched by then is the first part of an order in
-//! which every first part covers all orientations about evenly. The number of these rotations is recorded: searched
-//! again, they give the same bytes.
+//! A search within a time stops between two rotations. It has then searched the first part of an order in which every
+//! first part covers all orientations about evenly. The number of these rotations is recorded: searched again, they give
+//! the same bytes.
 
 use crate::pose_space::rotations::RotationGroup;
 use crate::search::plan::SearchPlan;
 
-/// The groups of rotations to search: all in the order of the set, or evenly spread where a search may stop, or has
-/// stopped, before the last.
+/// The groups of rotations to search: all in the order of the set, or evenly spread if a search may stop, or has stopped,
+/// before the last.
 pub(crate) fn schedule(plan: &SearchPlan, may_stop: bool) -> Vec<RotationGroup> {
     let all = plan.rotations.groups();
     if !may_stop && plan.stop_after.is_none() {
@@ -36,10 +36,9 @@ fn evenly_spread(count: usize) -> impl Iterator<Item = usize> {
 }
 
 fn greatest_common_divisor(a: usize, b: usize) -> usize {
-    if b == 0 {
-        a
-    } else {
-        greatest_common_divisor(b, a % b)
+    match b {
+        0 => a,
+        _ => greatest_common_divisor(b, a % b),
     }
 }
 

@@ -26,16 +26,16 @@ pub(super) struct Particle {
     pub bonding: Option<Bonding>,
 }
 
-/// What an atom does in hydrogen bonds.
+/// Role of an atom in hydrogen bonds.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Bonding {
     pub role: HydrogenBonding,
-    /// Unit vector away from the bonded neighbours, and whether there is one of them only; `None` of an atom by itself.
+    /// Unit vector away from the bonded neighbours, and whether there is only one; `None` for an atom by itself.
     pub direction: Option<([f64; 3], bool)>,
 }
 
 impl Bonding {
-    /// How well a partner lies, in the direction of this unit vector: 0 to 1.
+    /// Fit of a partner in the direction of this unit vector, 0 to 1.
     fn fit(&self, towards: [f64; 3]) -> f64 {
         let Some((direction, is_end)) = self.direction else {
             return 1.0;

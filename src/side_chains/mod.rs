@@ -7,7 +7,7 @@
 //!
 //! # Energy
 //!
-//! In units of about a kcal/mol, a sum of three terms:
+//! A sum of three terms, in units of about a kcal/mol:
 //!
 //! - **Contacts** of heavy atoms within 6 Å: 0.1 (x^12 - 2 x^6), at most 10, with x = (r + s) / d. Here r and s are the
 //!   atoms' radii ([`knotdock_structures::molecule::Atom::radius`]), d their distance. The form is Lennard-Jones', with
@@ -19,13 +19,13 @@
 //! - **Rotamers**: -w times the logarithm of the probability relative to the backbone's most probable rotamer
 //!   ([`knotdock_structures::molecule::log_probability`]).
 //!
-//! Pairs within a residue, and those with the C before and the N after it, are left to the third term, since they shape
-//! what rotamers are frequent. Water is not in the energy: long side chains at the rim gain contacts too easily.
+//! Pairs within a residue, and those with the C before and the N after it, are left to the third term, since they decide
+//! how frequent rotamers are. Water is not in the energy: long side chains at the rim gain contacts too easily.
 //!
 //! # Search
 //!
 //! The first search is among the rotamers of each backbone and the present angles, with steps of 10 degrees in the
-//! first two angles. Three more try steps of 8 and of 4 degrees about what was found.
+//! first two angles. Three more try steps of 8 and of 4 degrees about the result.
 //!
 //! In each search dead ends are eliminated, and components that share no energy are solved exactly (`packing`). Those
 //! that are too entangled are annealed, with numbers that are the same in every run. Nothing depends on the number of

@@ -8,14 +8,14 @@ use super::scene::{Body, cells, clashes};
 use super::search::{Search, search};
 use super::sites::{Setting, Site};
 
-/// How side chains are packed.
+/// Options of packing.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct RepackOptions {
     /// Side chains with an atom, CB included, this near to the other molecule are packed, in Å.
     pub reach: f64,
     /// Least gain of energy for which a side chain moves, so that trusted ones do not jitter; at least 0.
     ///
-    /// Chosen so that side chains of bound complexes stay, nearly all, while most clashes of unbound ones go.
+    /// Chosen so that nearly all side chains of bound complexes stay, while most clashes of unbound ones go.
     pub threshold: f64,
     /// Weight of the rotamers' logarithm of probability.
     pub rotamer_weight: f64,
@@ -40,27 +40,27 @@ pub struct Repacked {
     pub ligand: Molecule,
     /// Side chains that moved, the receptor's first, in file order.
     pub moved: Vec<RepackedResidue>,
-    /// Side chains of the interface that had to stay, and why.
+    /// Side chains of the interface that had to stay, with the reasons.
     pub held: Vec<HeldResidue>,
-    /// How many side chains of the interface might move.
+    /// Number of side chains of the interface that could move.
     pub considered: usize,
-    /// Energy of what may move, within itself and with all else, in the present states; about kcal/mol.
+    /// Energy of the side chains that may move, within themselves and with all else, in the present states; about kcal/mol.
     pub energy_before: f64,
-    /// The same in the new states; never above `energy_before`.
+    /// That energy in the new states; never above `energy_before`.
     pub energy_after: f64,
     /// Pairs of heavy atoms across the interface nearer than 0.8 of the sum of their radii, before.
     pub clashes_before: usize,
-    /// The same after.
+    /// Such pairs after.
     pub clashes_after: usize,
     /// Whether every search was exact: the rotamers, and then the finer steps about them, were the best together of
-    /// those tried. Where not, some components were annealed.
+    /// those tried. If not, some components were annealed.
     pub exact: bool,
 }
 
 /// A side chain that moved.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct RepackedResidue {
-    /// Whose it is.
+    /// Its molecule.
     pub partner: Partner,
     /// The author's name of the chain; may be empty.
     pub chain: String,
@@ -70,14 +70,14 @@ pub struct RepackedResidue {
     pub name: String,
     /// Its chi angles in radians, -pi to pi, before.
     pub chi_before: Vec<f64>,
-    /// The same after.
+    /// Its chi angles after.
     pub chi_after: Vec<f64>,
 }
 
 /// A side chain of the interface that had to stay.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct HeldResidue {
-    /// Whose it is.
+    /// Its molecule.
     pub partner: Partner,
     /// The author's name of the chain; may be empty.
     pub chain: String,
@@ -148,7 +148,7 @@ impl<'a> Repacker<'a> {
         self.options.threshold.max(0.0)
     }
 
-    /// The ligand's middle at the pose, about which all is computed.
+    /// The ligand's centre at the pose: the origin of the computation.
     fn origin(&self, pose: &Pose) -> [f64; 3] {
         let atoms = &self.bodies[1].molecule.atoms;
         let mean = |axis: usize| {
@@ -157,8 +157,8 @@ impl<'a> Repacker<'a> {
         pose.apply(std::array::from_fn(mean))
     }
 
-    /// The side chains near the other molecule, as the body and the place among its side chains: those that may move,
-    /// and what keeps the others.
+    /// The side chains near the other molecule: those that may move, as the body and the place among its side chains, and
+    /// those that have to stay.
     fn interface(&self, positions: &[Vec<[f64; 3]>; 2]) -> (Vec<[usize; 2]>, Vec<HeldResidue>) {
         let (mut packed, mut held) = (Vec::new(), Vec::new());
         let reach = self.options.reach;
@@ -191,8 +191,8 @@ impl<'a> Repacker<'a> {
     /// A molecule in its own frame with its side chains in these states.
     fn with_states(&self, body: usize, sites: &[Site<'_>], states: &[usize]) -> Molecule {
         let mut molecule = self.bodies[body].molecule.clone();
-        let mut positions: Vec<[f64; 3]> =
-            molecule.atoms.iter().map(|atom| atom.position).collect();
+        let positions = molecule.atoms.iter().map(|atom| atom.position);
+        let mut positions: Vec<[f64; 3]> = positions.collect();
         for (site, &state) in sites.iter().zip(states) {
             if site.body == body && state != 0 {
                 site.side_chain.set_chi(&mut positions, &site.states[state]);
@@ -219,7 +219,8 @@ impl<'a> Repacker<'a> {
             chi_before: site.side_chain.chi(&positions[site.body]),
             chi_after: site.states[state]
                 .iter()
-                .map(|&chi| within_turn(chi))
+                .copied()
+                .map(within_turn)
                 .collect(),
         };
         moved.map(of).collect()

@@ -1,4 +1,4 @@
-//! Both molecules of a pose, made ready for energies and for counts of clashes.
+//! Both molecules of a pose, prepared for energies and for counts of clashes.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{HydrogenBonding, Molecule, SideChain, hydrogen_bonding};
@@ -9,11 +9,11 @@ use super::energy::{Bonding, Particle, REACH};
 /// Longest bond in Å of a nitrogen or oxygen to a heavy atom.
 const BOND: f64 = 1.75;
 
-/// A molecule, and what of it does not depend on the pose.
+/// A molecule with its properties that do not depend on the pose.
 pub(super) struct Body<'a> {
     pub molecule: &'a Molecule,
     pub side_chains: Vec<SideChain>,
-    /// What each atom does in hydrogen bonds, and the heavy atoms that it is bonded to.
+    /// Role of each atom in hydrogen bonds, and the heavy atoms that it is bonded to.
     bonding: Vec<Option<(HydrogenBonding, Vec<usize>)>>,
 }
 
@@ -26,11 +26,8 @@ impl<'a> Body<'a> {
             .iter()
             .enumerate()
             .filter(|(_, atom)| !atom.is_hydrogen());
-        let members = heavy.map(|(item, atom)| Member {
-            position: minus(atom.position, origin),
-            item,
-        });
-        let cells = CellList::new(members.collect(), REACH / 2.0);
+        let members = heavy.map(|(place, atom)| (minus(atom.position, origin), place));
+        let cells = cells(members, REACH / 2.0);
         let bonding = atoms.iter().enumerate().map(|(place, atom)| {
             let role = hydrogen_bonding(&atom.residue_name, &atom.name, &atom.element)?;
             let mut bonded = Vec::new();
@@ -50,10 +47,12 @@ impl<'a> Body<'a> {
 
     /// Positions of all atoms in the receptor's frame relative to `origin` (Å).
     pub fn positions(&self, pose: &Pose, origin: [f64; 3]) -> Vec<[f64; 3]> {
-        let atoms = self.molecule.atoms.iter();
-        atoms
-            .map(|atom| minus(pose.apply(atom.position), origin))
-            .collect()
+        let placed = self
+            .molecule
+            .atoms
+            .iter()
+            .map(|atom| pose.apply(atom.position));
+        placed.map(|position| minus(position, origin)).collect()
     }
 
     /// An atom, with all atoms of its molecule at these positions.
@@ -71,15 +70,11 @@ impl<'a> Body<'a> {
     }
 }
 
-/// Unit vector from the middle of the bonded atoms to an atom; `None` where there are none or it has no direction.
+/// Unit vector from the middle of the bonded atoms to an atom; `None` if there are none or it has no direction.
 fn away(position: [f64; 3], bonded: &[usize], positions: &[[f64; 3]]) -> Option<[f64; 3]> {
-    let count = bonded.len() as f64;
     let middle = |axis: usize| {
-        bonded
-            .iter()
-            .map(|&atom| positions[atom][axis])
-            .sum::<f64>()
-            / count
+        let along = bonded.iter().map(|&atom| positions[atom][axis]);
+        along.sum::<f64>() / bonded.len() as f64
     };
     let arm: [f64; 3] = std::array::from_fn(|axis| position[axis] - middle(axis));
     let length = arm.iter().map(|x| x * x).sum::<f64>().sqrt();
@@ -101,18 +96,18 @@ pub(super) fn minus(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
 /// oxygen at 2.4 Å.
 const CLASH: f64 = 0.8;
 
-/// Pairs of heavy atoms of two placed molecules that clash; `origin` (Å) lies near both.
+/// Pairs of heavy atoms of two placed molecules that clash; `origin` (Å) is near both.
 pub(super) fn clashes(receptor: &Molecule, ligand: &Molecule, origin: [f64; 3]) -> usize {
     let heavy = |molecule: &Molecule| -> Vec<([f64; 3], f64)> {
         let atoms = molecule.atoms.iter().filter(|atom| !atom.is_hydrogen());
-        atoms
-            .map(|atom| (minus(atom.position, origin), atom.radius))
-            .collect()
+        let balls = atoms.map(|atom| (minus(atom.position, origin), atom.radius));
+        balls.collect()
     };
     let receptor = heavy(receptor);
     let largest = receptor
         .iter()
-        .fold(0.0_f64, |largest, (_, radius)| largest.max(*radius));
+        .map(|(_, radius)| *radius)
+        .fold(0.0, f64::max);
     let cells = cells(receptor.into_iter(), REACH);
     let mut count = 0;
     for (position, radius) in heavy(ligand) {

@@ -32,7 +32,7 @@ pub(super) fn search<'a>(setting: &Setting<'a>, threshold: f64) -> Search<'a> {
             around(present, &site.states[state], step.to_radians())
         });
         let lists = lists.collect();
-        // The present state costs no threshold, so what has not moved starts from there.
+        // The present state costs no threshold: side chains that have not moved start from there.
         let states = search.solution.states.iter();
         let start: Vec<usize> = states.map(|&state| usize::from(state != 0)).collect();
         let next = solved(setting, threshold, lists, &start);
@@ -85,7 +85,7 @@ fn problem(sites: &[Site<'_>], threshold: f64) -> Problem {
     }
 }
 
-/// How far from a rotamer, and from the present angles, the first two angles are tried, in radians: 10 degrees.
+/// Step in the first two angles from a rotamer, and from the present angles, in radians: 10 degrees.
 const STEP: f64 = 10.0 * std::f64::consts::PI / 180.0;
 
 /// The chi angles of each state in radians: the present ones, their neighbours, and the rotamers of the backbone with

@@ -20,11 +20,11 @@ pub(super) struct Site<'a> {
     pub states: Vec<Vec<f64>>,
     /// The mobile atoms of each state, one state after another.
     particles: Vec<Particle>,
-    /// Energy of each state with all that does not move.
+    /// Energy of each state with the fixed atoms.
     pub own: Vec<f64>,
 }
 
-/// An atom that does not move, and where it comes from.
+/// An atom that does not move, with its body and index.
 #[derive(Clone, Copy)]
 struct Fixed {
     particle: Particle,
@@ -32,7 +32,7 @@ struct Fixed {
     atom: usize,
 }
 
-/// The side chains of a pose that may move, among what does not.
+/// The side chains of a pose that may move, among the fixed atoms.
 pub(super) struct Setting<'a> {
     bodies: &'a [Body<'a>; 2],
     /// Positions of all atoms of both in one frame (Å).
@@ -91,24 +91,22 @@ impl<'a> Setting<'a> {
     /// The present chi angles of each in radians.
     pub fn present(&self) -> Vec<Vec<f64>> {
         let packed = self.side_chains().zip(self.packed);
-        packed
-            .map(|(side_chain, &[body, _])| side_chain.chi(&self.positions[body]))
-            .collect()
+        let present = packed.map(|(one, &[body, _])| one.chi(&self.positions[body]));
+        present.collect()
     }
 
     /// The sites with these states each, as chi angles in radians.
     pub fn sites(&self, lists: Vec<Vec<Vec<f64>>>) -> Vec<Site<'a>> {
         let mut scratch = self.positions.clone();
-        let sites = self.side_chains().zip(self.packed).zip(lists);
-        sites
-            .map(|((side_chain, &[body, _]), states)| {
-                let site = self.site(body, side_chain, states, &mut scratch[body]);
-                for &atom in &side_chain.near_bonds {
-                    scratch[body][atom] = self.positions[body][atom];
-                }
-                site
-            })
-            .collect()
+        let packed = self.side_chains().zip(self.packed).zip(lists);
+        let sites = packed.map(|((side_chain, &[body, _]), states)| {
+            let site = self.site(body, side_chain, states, &mut scratch[body]);
+            for &atom in &side_chain.near_bonds {
+                scratch[body][atom] = self.positions[body][atom];
+            }
+            site
+        });
+        sites.collect()
     }
 
     /// One side chain's states; leaves its atoms where the last of them has them.
@@ -135,11 +133,8 @@ impl<'a> Setting<'a> {
             particles: Vec::new(),
             own: Vec::new(),
         };
-        let start: Vec<[f64; 3]> = side_chain
-            .near_bonds
-            .iter()
-            .map(|&at| positions[at])
-            .collect();
+        let start = side_chain.near_bonds.iter().map(|&at| positions[at]);
+        let start: Vec<[f64; 3]> = start.collect();
         let mut best = f64::INFINITY;
         for chi in states {
             for (&atom, &position) in side_chain.near_bonds.iter().zip(&start) {
@@ -172,14 +167,11 @@ impl<'a> Setting<'a> {
 impl Site<'_> {
     /// Drops states that cost far more than the best, but for the first two, where a search may start.
     fn drop_costly(&mut self, best: f64) {
-        let count = self.mobile.len();
         let kept: Vec<usize> = (0..self.own.len())
             .filter(|&state| state < 2 || self.own[state] <= best + MAX_EXCESS)
             .collect();
-        self.particles = kept
-            .iter()
-            .flat_map(|&state| self.particles[state * count..][..count].iter().copied())
-            .collect();
+        let particles = kept.iter().flat_map(|&state| self.of_state(state));
+        self.particles = particles.copied().collect();
         self.states = kept
             .iter()
             .map(|&state| self.states[state].clone())
@@ -187,7 +179,13 @@ impl Site<'_> {
         self.own = kept.iter().map(|&state| self.own[state]).collect();
     }
 
-    /// A ball that holds the mobile atoms of a run of states: centre and radius in Å.
+    /// The mobile atoms of a state.
+    fn of_state(&self, state: usize) -> &[Particle] {
+        let count = self.mobile.len();
+        &self.particles[state * count..][..count]
+    }
+
+    /// A ball that holds the mobile atoms of some states: centre and radius in Å.
     fn ball(particles: &[Particle]) -> ([f64; 3], f64) {
         let count = particles.len().max(1) as f64;
         let mean =
@@ -200,7 +198,7 @@ impl Site<'_> {
     }
 }
 
-/// Energies of the states of two sites together, the second's running fastest; `None` where all are zero.
+/// Energies of the states of two sites together, the second's running fastest; `None` if all are zero.
 pub(super) fn pair_energies(first: &Site<'_>, second: &Site<'_>) -> Option<Vec<f64>> {
     let are_far = |(a, r): ([f64; 3], f64), (b, s): ([f64; 3], f64)| {
         square(minus(a, b)) >= (r + s + REACH).powi(2)
@@ -213,17 +211,13 @@ pub(super) fn pair_energies(first: &Site<'_>, second: &Site<'_>) -> Option<Vec<f
         states.map(Site::ball).collect()
     };
     let (of_first, of_second) = (balls(first), balls(second));
-    let states = |site: &'_ Site<'_>, state: usize| {
-        let count = site.mobile.len();
-        state * count..(state + 1) * count
-    };
     let mut energies = Vec::with_capacity(of_first.len() * of_second.len());
     for (r, &ball) in of_first.iter().enumerate() {
         for (s, &other) in of_second.iter().enumerate() {
             let mut energy = 0.0;
             if !are_far(ball, other) {
-                for a in &first.particles[states(first, r)] {
-                    for b in &second.particles[states(second, s)] {
+                for a in first.of_state(r) {
+                    for b in second.of_state(s) {
                         energy += pair_energy(a, b);
                     }
                 }
@@ -231,10 +225,8 @@ pub(super) fn pair_energies(first: &Site<'_>, second: &Site<'_>) -> Option<Vec<f
             energies.push(energy);
         }
     }
-    energies
-        .iter()
-        .any(|&energy| energy != 0.0)
-        .then_some(energies)
+    let acts = energies.iter().any(|&energy| energy != 0.0);
+    acts.then_some(energies)
 }
 
 fn square(x: [f64; 3]) -> f64 {

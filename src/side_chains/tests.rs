@@ -16,7 +16,7 @@ fn example(name: &str) -> Molecule {
     .unwrap()
 }
 
-/// Trypsin and its inhibitor as they lie in the crystal.
+/// Trypsin and its inhibitor as in the crystal.
 fn bound() -> [Molecule; 2] {
     ["1ppe_receptor_bound.pdb", "1ppe_ligand_bound.pdb"].map(example)
 }
@@ -192,7 +192,7 @@ fn the_energy_never_rises_and_only_what_is_reported_moves() {
     assert!(distant.exact);
 }
 
-/// A ligand placed by its pose is packed like one that lies there.
+/// A ligand placed by its pose is packed like one that is there.
 #[test]
 fn poses_and_placed_molecules_agree() {
     let [receptor, ligand] = bound();

@@ -1,15 +1,15 @@
 //! Cells of tables that no spreadsheet takes for formulas.
 //!
-//! A cell that begins with `=`, `+`, `-`, `@`, a tab or a carriage return is run by spreadsheets, and the names in
-//! structure files may be anyone's. All tables with names of files are written here: such a cell gets a single quote in
-//! front unless it is a number (OWASP, "CSV Injection"). Readers of tables take it off again.
+//! Spreadsheets run a cell that begins with `=`, `+`, `-`, `@`, a tab or a carriage return, and the names in structure
+//! files may be anyone's. All tables with names of files are written here: such a cell gets a single quote in front unless
+//! it is a number (OWASP, "CSV Injection"). Readers of tables remove it.
 
 use std::borrow::Cow;
 use std::io;
 
 use csv::StringRecord;
 
-/// What a formula begins with.
+/// Beginnings of formulas.
 const STARTS: [char; 6] = ['=', '+', '-', '@', '\t', '\r'];
 
 /// Whether a cell is a formula's text, perhaps behind quotes: these stay what they are by one more.
@@ -20,10 +20,9 @@ fn is_formula(cell: &str) -> bool {
 /// A cell as it is written.
 pub fn quoted(cell: &str) -> Cow<'_, str> {
     let is_number = || cell.parse::<f64>().is_ok_and(f64::is_finite);
-    if is_formula(cell) && !is_number() {
-        Cow::Owned(format!("'{cell}"))
-    } else {
-        Cow::Borrowed(cell)
+    match is_formula(cell) && !is_number() {
+        true => format!("'{cell}").into(),
+        false => cell.into(),
     }
 }
 
@@ -52,9 +51,6 @@ impl<W: io::Write> TableWriter<W> {
     }
 
     /// Writes a row.
-    ///
-    /// # Errors
-    /// Those of the stream.
     pub fn row<T: AsRef<str>>(&mut self, cells: impl IntoIterator<Item = T>) -> io::Result<()> {
         for cell in cells {
             self.0.write_field(quoted(cell.as_ref()).as_bytes())?;
@@ -64,9 +60,6 @@ impl<W: io::Write> TableWriter<W> {
     }
 
     /// Hands on all that was written.
-    ///
-    /// # Errors
-    /// Those of the stream.
     pub fn flush(&mut self) -> io::Result<()> {
         self.0.flush()
     }

@@ -61,11 +61,8 @@ pub(crate) fn read_rows<const N: usize>(
             }
             Some(places) if record.len() != places.len() => {
                 let (fields, columns) = (record.len(), places.len());
-                return Err(Error::input(format!(
-                    "the row has {fields} fields and the header {columns}"
-                ))
-                .on_line(line)
-                .help(
+                let message = format!("the row has {fields} fields and the header {columns}");
+                return Err(Error::input(message).on_line(line).help(
                     "give each row a field for each column, and put a field with commas in quotes",
                 ));
             }
@@ -96,21 +93,19 @@ impl<const N: usize> Columns<N> {
             }
             places.push(place);
         }
-        match self
-            .needed
-            .iter()
-            .find(|column| !names.iter().any(|name| name == *column))
-        {
-            Some(column) => Err(refused(format!(
-                "there is no column `{column}`; the header has {}",
-                listed(names.iter().map(String::as_str))
-            ))),
+        let mut needed = self.needed.iter();
+        match needed.find(|column| !names.iter().any(|name| name == *column)) {
+            Some(column) => {
+                let present = listed(names.iter().map(String::as_str));
+                let message = format!("there is no column `{column}`; the header has {present}");
+                Err(refused(message))
+            }
             None => Ok(places),
         }
     }
 }
 
-/// A text of the file as far as a message needs it.
+/// The beginning of a text, for messages.
 pub(crate) fn shortened(text: &str) -> String {
     const MOST: usize = 60;
     let mut shown: String = text.split_whitespace().collect::<Vec<_>>().join(" ");
@@ -153,10 +148,8 @@ pub fn plain(bytes: Vec<u8>) -> Result<(String, u8), String> {
         .unwrap_or_default();
     let count = |byte: &u8| header.bytes().filter(|other| other == byte).count();
     // The last of equals is taken.
-    let delimiter = *b"\t;,"
-        .iter()
-        .max_by_key(|&byte| count(byte))
-        .unwrap_or(&b',');
+    let delimiter = b"\t;,".iter().max_by_key(|&byte| count(byte));
+    let delimiter = *delimiter.unwrap_or(&b',');
     Ok((text, delimiter))
 }
 
@@ -165,16 +158,16 @@ pub fn column_name(name: &str) -> String {
     name.to_lowercase().replace(['-', ' '], "_")
 }
 
-/// The 1-based line on which a record begins, whose position is that of the reader before it passed over empty
-/// lines and, where a byte begins comments, over theirs.
+/// The 1-based line on which a record begins, whose position is that of the reader before it passed over empty lines and
+/// comments, which begin with the byte `comment`.
 pub fn line_of(text: &[u8], position: &csv::Position, comment: Option<u8>) -> u64 {
     let from = usize::try_from(position.byte()).unwrap_or(usize::MAX);
     let rest = text.get(from..).unwrap_or_default();
     position.line() + passed_over(rest.split(|&byte| byte == b'\n'), comment)
 }
 
-/// How many of the lines before a record the reader passes over. No line after the record's is read: rows that each
-/// went through the rest of their file would be quadratic.
+/// The number of lines before a record that the reader passes over. No line after the record's is read: reading the rest of
+/// the file for every row would be quadratic.
 fn passed_over<'a>(
     lines: impl DoubleEndedIterator<Item = &'a [u8]> + Clone,
     comment: Option<u8>,
@@ -187,7 +180,7 @@ fn passed_over<'a>(
         .clone()
         .position(|line| !is_passed(line))
         .unwrap_or_else(|| {
-            // A record there is, if only a last line that the reader took for one.
+            // There is a record, if only a last line that the reader took for one.
             let rest = lines.rev().skip_while(|line| line.is_empty());
             rest.count().saturating_sub(1)
         });

@@ -106,7 +106,7 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
         (["--resolution", "0"], "above 0"),
         (["--alpha", "0"], "above zero"),
         (["--rotations", "0"], "between 1 and 10000000"),
-        (["--sampler", "voxels"], "no such sampler"),
+        (["--sampler", "voxels"], "lattice or bi"),
     ] {
         says(&refused(&place, &[&meshes[..], &more].concat()), word);
     }

@@ -13,10 +13,10 @@ use crate::messages::dock::{counted_names, metal_bound, termini_text};
 use crate::records::joined;
 use crate::tables::report::counted;
 use crate::tables::{Column, write_table};
-use knotdock::output::files::molecule_file;
+use knotdock::output::files::complexes::{format_of_name, write_kept_atoms};
 use knotdock::output::files::whole_file::write_whole;
 use knotdock::priors::{Findings, PRIORS};
-use knotdock::rank::term_counts;
+use knotdock::rank::rescoring::term_counts;
 use knotdock_scoring::terms::pose::TermDefinition;
 use knotdock_structures::Error;
 use knotdock_structures::ball_union::{Volume, union_volume};
@@ -81,7 +81,7 @@ impl Inspect {
             console.say(format!("{} atoms in {}", fates.len(), path.display()));
         }
         if let (Some(path), Some(format)) = (&self.write, format) {
-            molecule_file::write(path, format, molecule)?;
+            write_kept_atoms(path, format, molecule)?;
             console.say(format!(
                 "{} kept, in {}",
                 counted(molecule.atoms.len(), "atom"),
@@ -118,7 +118,7 @@ impl Inspection {
         let findings = findings.collect();
         let unresolved = molecule.unresolved_residues();
         let termini = molecule.termini();
-        let counts = term_counts::of(molecule, &labels, &unresolved, &termini);
+        let counts = term_counts(molecule, &labels, &unresolved, &termini);
         Ok(Self {
             counts: counts.map_err(Error::input)?,
             volume: union_volume(&molecule.knots().map_err(Error::input)?),
@@ -163,7 +163,7 @@ fn counts_text(counts: &[(&TermDefinition, usize)]) -> String {
 }
 
 fn written_format(file: &Path) -> Result<Format, Error> {
-    molecule_file::format_of_name(file).ok_or_else(|| {
+    format_of_name(file).ok_or_else(|| {
         Error::input("the name of the structure to write ends neither in .pdb nor in .cif")
             .at(file)
             .help("end the name in .pdb or .cif")

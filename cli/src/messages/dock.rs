@@ -377,11 +377,7 @@ const LARGEST_ANGLE: usize = 30;
 /// How many rotations are searched, and the time and memory that the search is expected to take.
 ///
 /// A number of rotations that may be meant as an angle is answered with that angle's, unless it `is_angle`.
-pub fn expected_text(
-    plan: &DockPlan,
-    chosen: Option<&Chosen>,
-    is_angle: bool,
-) -> String {
+pub fn expected_text(plan: &DockPlan, chosen: Option<&Chosen>, is_angle: bool) -> String {
     let rotations = plan.search.space.sampled(plan.rotations);
     let mut text = format!("Searches {} {rotations}", plan.rotations);
     if plan.options.search.symmetry.is_none() {

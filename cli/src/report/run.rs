@@ -74,18 +74,18 @@ pub(super) fn data(report: &RunReport, count: usize) -> Value {
     });
     match (report.bodies, report.contacts) {
         (Bodies::Molecules(molecules), Some(contacts)) => {
-            let sides = contacts.finder().residues();
+            let sides = contacts.finder.residues();
             data["bodies"] = (0..2)
                 .map(|side| molecule(report, side, molecules[side], sides[side]))
                 .collect();
-            let rows = contacts.rows().iter().take(count).map(|row| flat(row));
+            let rows = contacts.rows.iter().take(count).map(|row| flat(row));
             data["contacts"] = rows.collect();
             let shares = contacts.shares();
             data["shares"] = shares
                 .iter()
                 .map(|side| side.iter().map(|share| share.clusters).collect::<Value>())
                 .collect();
-            data["counted"] = json!(contacts.counted());
+            data["counted"] = json!(contacts.firsts.len());
         }
         (Bodies::Molecules(_), None) => {}
         (Bodies::Solids(surfaces), _) => data["bodies"] = surfaces.iter().map(solid).collect(),

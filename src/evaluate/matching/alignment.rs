@@ -3,8 +3,7 @@
 //! The sequence alignment is Gotoh's (J. Mol. Biol. 162 (1982) 705-708, affine gaps, time and memory of the product
 //! of the lengths) with free ends. If a gap fits several places alike, in a run of glycines or at the edge
 //! of a missing loop, it goes where the chain that lacks the residues is broken. If nothing is broken there, numbers
-//! decide: those that agree, and those that leave some out. What then is left open is decided by the superposition
-//! ([`settle`]).
+//! decide: those that agree, and those that leave some out. The superposition decides the rest ([`settle`]).
 
 use std::collections::HashMap;
 
@@ -27,7 +26,7 @@ const GAP_OPEN: f64 = -8.0;
 /// Missing loops are long and common: length costs little.
 const GAP_EXTEND: f64 = -0.1;
 
-/// Residues of two chains that stand for each other.
+/// Residues of two chains that are aligned with each other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(in crate::evaluate) struct Alignment {
     /// Places (in the first chain, in the second) of equal residues, rising in the first.
@@ -67,7 +66,7 @@ fn pair_by_number(first: &[&Residue], second: &[&Residue]) -> Alignment {
     found
 }
 
-/// The place of each number; nothing where several residues have it, as in files without insertion codes.
+/// The place of each number; `None` if several residues have it, as in files without insertion codes.
 fn places_by_number(residues: &[&Residue]) -> HashMap<Number, Option<usize>> {
     let mut places = HashMap::new();
     for (place, residue) in residues.iter().enumerate() {
@@ -108,7 +107,7 @@ impl Cell {
     };
 }
 
-/// The better of the candidates; the earlier one on ties, so that the answer does not hang on chance.
+/// The best of the candidates; the first of equal ones.
 fn best<const N: usize>(candidates: [(f64, State); N]) -> (f64, State) {
     let mut winner = (f64::NEG_INFINITY, State::Start);
     for candidate in candidates {
@@ -185,7 +184,7 @@ fn align_sequences(first: &[&Residue], second: &[&Residue]) -> Alignment {
     trace_back(first, second, &traces, end)
 }
 
-/// Moves gaps that could stand elsewhere alike to where the superposed residues lie nearest each other.
+/// Moves gaps that fit several places alike to where the superposed residues are nearest each other.
 ///
 /// `pairs` are places in the two chains, and `moved` superposes the first on the second. Gaps at which numbers or bonds
 /// decide stay. Returns whether any moved.
@@ -199,18 +198,11 @@ pub(in crate::evaluate) fn settle(
     let distance = |(i, j): (usize, usize)| {
         let atoms = first[i].backbone.iter().zip(&second[j].backbone);
         let both = atoms.filter_map(|(x, y)| (*x).zip(*y));
-        let squares: Vec<f64> = both
-            .map(|(x, y)| nalgebra::distance_squared(&moved(x), &y))
-            .collect();
-        match squares.len() {
+        let squares = both.map(|(x, y)| nalgebra::distance_squared(&moved(x), &y));
+        match squares.clone().count() {
             0 => f64::INFINITY,
-            count => squares.iter().sum::<f64>() / count as f64,
+            count => squares.sum::<f64>() / count as f64,
         }
-    };
-    // Whether a gap behind one residue of a chain shows as little as one behind the next.
-    let alike = |chain: &[&Residue], at: usize, next: usize| {
-        let shown = |place: usize| chain.get(place + 1).map(|after| step(chain[place], after));
-        shown(at) == shown(next)
     };
     let mut any = false;
     for at in 1..pairs.len() {
@@ -219,8 +211,8 @@ pub(in crate::evaluate) fn settle(
         while left > 0 {
             let ((i, j), (next_i, next_j)) = (pairs[left - 1], pairs[left]);
             let new = match (next_i - i, next_j - j) {
-                (2.., 1) if alike_before(second, j, &alike) => (next_i - 1, j),
-                (1, 2..) if alike_before(first, i, &alike) => (i, next_j - 1),
+                (2.., 1) if j > 0 && are_alike(second, j - 1, j) => (next_i - 1, j),
+                (1, 2..) if i > 0 && are_alike(first, i - 1, i) => (i, next_j - 1),
                 _ => break,
             };
             let fits = first[new.0].kind == second[new.1].kind;
@@ -235,8 +227,8 @@ pub(in crate::evaluate) fn settle(
         while !moved_left && right < pairs.len() {
             let ((i, j), (next_i, next_j)) = (pairs[right - 1], pairs[right]);
             let new = match (next_i - i, next_j - j) {
-                (2.., 1) if alike(second, j, next_j) => (i + 1, next_j),
-                (1, 2..) if alike(first, i, next_i) => (next_i, j + 1),
+                (2.., 1) if are_alike(second, j, next_j) => (i + 1, next_j),
+                (1, 2..) if are_alike(first, i, next_i) => (next_i, j + 1),
                 _ => break,
             };
             let fits = first[new.0].kind == second[new.1].kind;
@@ -251,13 +243,10 @@ pub(in crate::evaluate) fn settle(
     any
 }
 
-/// Whether a gap behind the residue at a place shows as little as one before it.
-fn alike_before(
-    chain: &[&Residue],
-    place: usize,
-    alike: &impl Fn(&[&Residue], usize, usize) -> bool,
-) -> bool {
-    place > 0 && alike(chain, place - 1, place)
+/// Whether a gap after one residue of a chain shows as little as one after another.
+fn are_alike(chain: &[&Residue], one: usize, other: usize) -> bool {
+    let shown = |place: usize| chain.get(place + 1).map(|after| step(chain[place], after));
+    shown(one) == shown(other)
 }
 
 fn trace_back(
@@ -345,7 +334,7 @@ mod tests {
 
     /// Found with a model numbered from 1 and a native that lacks the second of two glycines: the first was left out.
     #[test]
-    fn a_gap_stands_where_the_chain_is_broken() {
+    fn a_gap_is_where_the_chain_is_broken() {
         let whole: Vec<i64> = (1..=9).collect();
         let native = chain_of("A", "WYWGGCFYF", &(21..=29).collect::<Vec<_>>());
         for missing in [24, 25] {

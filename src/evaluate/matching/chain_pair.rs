@@ -3,15 +3,11 @@
 //! Sequences alone do not say which of several copies a chain is; that is for
 //! [`placements`](crate::evaluate::matching::placements).
 
-use std::collections::HashMap;
-
 use knotdock_scoring::se3::Pose;
 use nalgebra::Point3;
 
-use crate::evaluate::matching::alignment::{Alignment, align, settle};
-use crate::evaluate::residues::residue::Number;
-use crate::evaluate::residues::segments::{Step, step};
-use crate::evaluate::residues::{Residues, Segment};
+use crate::evaluate::matching::alignment::{align, settle};
+use crate::evaluate::residues::Residues;
 
 /// Residues of a docked chain matched with those of a chain of the native.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +45,13 @@ impl ChainPair {
         !self.pairs.is_empty() && self.pairs.len() as f64 >= least * ours.min(theirs) as f64
     }
 
-    /// Moves gaps that the sequences leave open to where residues lie nearest each other after `motion`; whether any moved.
+    /// Names of the docked chain and of the native's.
+    pub fn names<'a>(&self, user: &'a Residues, native: &'a Residues) -> (&'a str, &'a str) {
+        let (user, native) = (&user.segments[self.user], &native.segments[self.native]);
+        (&user.name, &native.name)
+    }
+
+    /// Moves gaps that the sequences leave open to where residues are nearest each other after `motion`; whether any moved.
     pub fn settle(&mut self, user: &Residues, native: &Residues, motion: &Pose) -> bool {
         let (ours, theirs) = (
             &user.segments[self.user].members,
@@ -75,65 +77,22 @@ impl ChainPair {
         }
         any
     }
-
-    fn of(
-        (user, ours): (usize, &[usize]),
-        (native, theirs): (usize, &[usize]),
-        found: &Alignment,
-    ) -> Self {
-        let pairs = found.pairs.iter().map(|&(i, j)| (ours[i], theirs[j]));
-        Self {
-            user,
-            native,
-            pairs: pairs.collect(),
-            aligned: found.aligned,
-            lengths: (ours.len(), theirs.len()),
-        }
-    }
 }
 
 /// Aligns some residues of one docked segment with some of the native's, each given with the segment's index.
 pub(in crate::evaluate) fn align_members(
-    user: &Residues,
-    native: &Residues,
-    ours: (usize, &[usize]),
-    theirs: (usize, &[usize]),
+    docked: &Residues,
+    complex: &Residues,
+    (user, ours): (usize, &[usize]),
+    (native, theirs): (usize, &[usize]),
 ) -> ChainPair {
-    let found = align(&user.at(ours.1), &native.at(theirs.1));
-    ChainPair::of(ours, theirs, &found)
-}
-
-/// Every docked segment aligned with every one of the native's, rows by the docked one.
-///
-/// Copies are aligned once: chains of the same residues and numbers have the same alignment.
-pub(in crate::evaluate) fn align_all(user: &Residues, native: &Residues) -> Vec<ChainPair> {
-    let (our_kinds, their_kinds) = (kinds(user), kinds(native));
-    let mut known: HashMap<(&Kind, &Kind), Alignment> = HashMap::new();
-    let mut all = Vec::with_capacity(our_kinds.len() * their_kinds.len());
-    for (u, our_kind) in our_kinds.iter().enumerate() {
-        for (n, their_kind) in their_kinds.iter().enumerate() {
-            let (ours, theirs) = (&user.segments[u].members, &native.segments[n].members);
-            let found = known
-                .entry((our_kind, their_kind))
-                .or_insert_with(|| align(&user.at(ours), &native.at(theirs)));
-            all.push(ChainPair::of((u, ours), (n, theirs), found));
-        }
+    let found = align(&docked.at(ours), &complex.at(theirs));
+    let pairs = found.pairs.iter().map(|&(i, j)| (ours[i], theirs[j]));
+    ChainPair {
+        user,
+        native,
+        pairs: pairs.collect(),
+        aligned: found.aligned,
+        lengths: (ours.len(), theirs.len()),
     }
-    all
-}
-
-/// Key of a chain's alignment: each residue's name and number, and the link to the next one.
-type Kind<'a> = Vec<(&'a str, Number, Option<Step>)>;
-
-fn kinds(residues: &Residues) -> Vec<Kind<'_>> {
-    let of_segment = |segment: &Segment| {
-        let members = residues.at(&segment.members).into_iter();
-        let following = members.clone().skip(1).map(Some).chain([None]);
-        let kinds = members.zip(following).map(|(residue, next)| {
-            let step = next.map(|next| step(residue, next));
-            (residue.kind.as_str(), residue.number, step)
-        });
-        kinds.collect()
-    };
-    residues.segments.iter().map(of_segment).collect()
 }

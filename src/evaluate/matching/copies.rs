@@ -15,6 +15,7 @@ use crate::evaluate::matching::chain_pair::ChainPair;
 use crate::evaluate::matching::placements::Placement;
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
 use crate::evaluate::residues::Residues;
+use crate::evaluate::residues::residue::Residue;
 
 /// Least matched residues of either side, as a share of those of the best combination.
 const MIN_OF_BEST: f64 = 0.8;
@@ -46,25 +47,15 @@ pub(in crate::evaluate) struct PlacedCopy<'a> {
 }
 
 impl PlacedCopy<'_> {
-    /// Equal residues of a placement in chains of equal names.
+    /// Number of equal residues of a placement in chains of equal names.
     fn same_named(&self, placement: usize) -> usize {
-        let is_same = |chain: &&ChainPair| {
-            self.user.segments[chain.user].name == self.native.segments[chain.native].name
-        };
-        let chains = self.placements[placement].chains.iter();
-        chains.filter(is_same).map(|chain| chain.pairs.len()).sum()
+        self.placements[placement].same_named(self.user, self.native)
     }
 
-    /// Names of the chains of a placement: the user's and the native's.
+    /// Names of the chains of a placement: the docked molecule's and the native's.
     fn names(&self, placement: usize) -> Vec<(&str, &str)> {
         let chains = self.placements[placement].chains.iter();
-        let name = |chain: &ChainPair| {
-            let (user, native) = (chain.user, chain.native);
-            (
-                self.user.segments[user].name.as_str(),
-                self.native.segments[native].name.as_str(),
-            )
-        };
+        let name = |pair: &ChainPair| pair.names(self.user, self.native);
         let mut names: Vec<_> = chains.map(name).collect();
         names.sort_unstable();
         names
@@ -82,8 +73,8 @@ pub(in crate::evaluate) struct Combinations {
 
 /// The combinations that count.
 ///
-/// `disjoint` where both sides are placed on one native, of which no residue can belong to both; `named` where the user
-/// names chains, so that no contact is too small.
+/// `disjoint` if both sides are placed on one native, of which no residue can belong to both; `named` if the user names
+/// chains, so that no contact is too small.
 ///
 /// # Errors
 /// [`Error`] if both sides only match the same chain, or no two touch.
@@ -111,7 +102,7 @@ pub(in crate::evaluate) fn combinations(
             } else {
                 let pairs = ours
                     .iter()
-                    .flat_map(|&n| theirs.iter().map(move |&m| (n, m)));
+                    .flat_map(|n| theirs.iter().map(move |m| (*n, *m)));
                 pairs.map(|(n, m)| counts.of(n, m)).sum()
             };
             all.push(Combination {
@@ -134,7 +125,7 @@ pub(in crate::evaluate) fn combinations(
         return Err(no_contact());
     }
     let mut all = nearly_complete(sides, all);
-    // By what they are, not by their order in the file.
+    // The order in the file has no effect.
     all.sort_by_cached_key(|one| {
         let [r, l] = one.placements;
         let same_named = receptor.same_named(r) + ligand.same_named(l);
@@ -216,18 +207,11 @@ fn balls(residues: &Residues) -> Vec<(Point3<f64>, f64)> {
     let segments = residues.segments.iter();
     segments
         .map(|segment| {
-            let members = || {
-                segment
-                    .members
-                    .iter()
-                    .map(|&member| &residues.residues[member])
-            };
-            let sum: Vector3<f64> = members().map(|one| one.center.coords).sum();
-            let center = Point3::from(sum / segment.members.len().max(1) as f64);
-            let reach = |one: &crate::evaluate::residues::residue::Residue| {
-                nalgebra::distance(&one.center, &center) + one.radius
-            };
-            (center, members().map(reach).fold(0.0, f64::max))
+            let members = residues.at(&segment.members);
+            let sum: Vector3<f64> = members.iter().map(|one| one.center.coords).sum();
+            let center = Point3::from(sum / members.len().max(1) as f64);
+            let reach = |one: &&Residue| nalgebra::distance(&one.center, &center) + one.radius;
+            (center, members.iter().map(reach).fold(0.0, f64::max))
         })
         .collect()
 }

@@ -1,19 +1,19 @@
 //! Placements of one docked side on the native: which of its chains is which copy, by superposition.
 //!
 //! A docked side is rigid, so one pair of chains fixes where all others must be. Each likely pair in turn is
-//! superposed; then every other chain is given the native's chain that lies where it comes to stand, and what is left
-//! of chains that one file has merged likewise. Copies elsewhere in the crystal are never mixed, whatever their
-//! names, the order of the file and the residues that each copy lacks. For two identical chains these ways are their
-//! orders that fit; for a ring of n they are its n rotations.
+//! superposed; then every other chain is assigned the native's chain in its place, and so is the rest of chains that one
+//! file has merged. Copies elsewhere in the crystal are never mixed, whatever their names, the order of the file and the
+//! residues that each copy lacks. For two identical chains the placements are their orders that fit; for a ring of n they
+//! are its n rotations.
 //!
-//! A chain that finds nothing in its place is given the one chain of its sequence, even if that stands elsewhere (a
-//! hinge, a domain that moved).
+//! A chain with nothing in its place is assigned the one chain of its sequence, even if that is elsewhere (a hinge, a
+//! domain that moved).
 
 use knotdock_scoring::se3::Pose;
-use nalgebra::Point3;
+use nalgebra::{Point3, Vector3};
 
 use crate::evaluate::chain_choice::ChainChoice;
-use crate::evaluate::matching::chain_pair::{ChainPair, align_all, align_members};
+use crate::evaluate::matching::chain_pair::{ChainPair, align_members};
 use crate::evaluate::matching::superposition::{MAX_FIT_RMSD, PointPair, Superposition};
 use crate::evaluate::residues::Residues;
 use crate::evaluate::rmsd::backbone_pairs;
@@ -22,11 +22,11 @@ use crate::evaluate::rmsd::backbone_pairs;
 const MIN_SEED: f64 = 0.2;
 /// Most placements that are made: more than a capsid has chains.
 const MAX_PLACEMENTS: usize = 256;
-/// Pairs of fewer residues lie together by chance, where there are longer ones.
+/// Pairs of fewer residues are near by chance, if there are longer ones.
 const MIN_PAIRS: usize = 3;
 /// Equal residues that a chain has by no chance.
 const DISTINCTIVE: usize = 20;
-/// Fewer are distinctive too, from the first number on, where the share of equal residues is at least the second.
+/// Fewer are distinctive too, from the first number on, if the share of equal residues is at least the second.
 const DISTINCTIVE_PEPTIDE: (usize, f64) = (8, 0.9);
 /// Fewest equal residues in the rest of two merged chains: fewer pair by chance.
 const MIN_OF_TWO_REMAINDERS: usize = 8;
@@ -58,6 +58,16 @@ impl Placement {
     /// Number of equal residues.
     pub fn matched(&self) -> usize {
         self.chains.iter().map(|chain| chain.pairs.len()).sum()
+    }
+
+    /// Number of equal residues in chains of equal names.
+    pub fn same_named(&self, user: &Residues, native: &Residues) -> usize {
+        let chains = self.chains.iter();
+        let same = chains.filter(|pair| {
+            let (user, native) = pair.names(user, native);
+            user == native
+        });
+        same.map(|pair| pair.pairs.len()).sum()
     }
 
     /// Equal residues as a share, 0 to 1, of all aligned ones.
@@ -96,34 +106,32 @@ pub(in crate::evaluate) fn placements(
     native: &Residues,
     choice: &ChainChoice,
 ) -> Vec<Placement> {
-    let mut alike = align_all(user, native);
-    alike.retain(|pair| {
-        let segments = (&user.segments[pair.user], &native.segments[pair.native]);
-        pair.is_alike() && choice.allows(segments.0, segments.1)
-    });
-    let largest = alike
-        .iter()
-        .map(|pair| pair.pairs.len())
-        .max()
-        .unwrap_or_default();
-    let least = MIN_PAIRS.min(largest);
-    let candidates: Vec<Candidate> = alike
-        .into_iter()
-        .filter(|pair| pair.pairs.len() >= least)
-        .map(|mut pair| {
-            let superposed = |pair: &ChainPair| {
-                Superposition::new(&backbone_pairs(user, native, pair.pairs.iter().copied()))
-            };
-            let mut superposition = superposed(&pair);
-            if pair.settle(user, native, &superposition.best) {
-                superposition = superposed(&pair);
+    let mut alike = Vec::new();
+    for (u, docked) in user.segments.iter().enumerate() {
+        for (n, other) in native.segments.iter().enumerate() {
+            if choice.allows(docked, other) {
+                let members = ((u, &docked.members[..]), (n, &other.members[..]));
+                alike.push(align_members(user, native, members.0, members.1));
             }
-            Candidate {
-                pair,
-                superposition,
-            }
-        })
-        .collect();
+        }
+    }
+    alike.retain(ChainPair::is_alike);
+    let sizes = alike.iter().map(|pair| pair.pairs.len());
+    let largest = sizes.max().unwrap_or_default();
+    alike.retain(|pair| pair.pairs.len() >= MIN_PAIRS.min(largest));
+    let candidate = |mut pair: ChainPair| {
+        let superposed =
+            |pair: &ChainPair| Superposition::new(&backbone_pairs(user, native, &pair.pairs));
+        let mut superposition = superposed(&pair);
+        if pair.settle(user, native, &superposition.best) {
+            superposition = superposed(&pair);
+        }
+        Candidate {
+            pair,
+            superposition,
+        }
+    };
+    let candidates: Vec<Candidate> = alike.into_iter().map(candidate).collect();
     let size = |candidate: &Candidate| candidate.pair.pairs.len();
     let mut seeds: Vec<&Candidate> = candidates
         .iter()
@@ -226,7 +234,7 @@ impl<'a> Builder<'a> {
                 .is_err()
         });
         theirs[pair.native].retain(|j| natives.binary_search(j).is_err());
-        let added = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
+        let added = backbone_pairs(self.user, self.native, &pair.pairs);
         self.points.extend(added);
         let superposition = Superposition::new(&self.points);
         self.motion = superposition.best;
@@ -288,8 +296,8 @@ impl<'a> Builder<'a> {
         }
     }
 
-    /// What is left of two chains, of which one at least is matched in part, if it is alike and lies together; and
-    /// what it is worth.
+    /// The remainders of two chains, of which one at least is matched in part, if they are alike and near each other, with
+    /// their worth.
     fn remainder(&self, user: usize, native: usize) -> Option<(f64, ChainPair)> {
         let whole = (self.is_whole_user(user), self.is_whole_native(native));
         if whole == (true, true) {
@@ -311,11 +319,8 @@ impl<'a> Builder<'a> {
         } else {
             Some(reach(equal))
         }?;
-        let superposition = Superposition::new(&backbone_pairs(
-            self.user,
-            self.native,
-            pair.pairs.iter().copied(),
-        ));
+        let points = backbone_pairs(self.user, self.native, &pair.pairs);
+        let superposition = Superposition::new(&points);
         let worth = superposition.count - superposition.at(&self.motion) / (reach * reach);
         (pair.is_alike() && worth > 0.0).then_some((worth, pair))
     }
@@ -323,17 +328,13 @@ impl<'a> Builder<'a> {
     /// Whether the balls about these residues come near each other once the user's are moved.
     fn are_near(&self, ours: &[usize], theirs: &[usize]) -> bool {
         let ball = |residues: &Residues, members: &[usize]| {
-            let centers = || {
-                members
-                    .iter()
-                    .map(|&member| residues.residues[member].center)
-            };
-            let sum = centers().fold(nalgebra::Vector3::zeros(), |sum, point| sum + point.coords);
-            let center = Point3::from(sum / members.len() as f64);
-            let radius = centers()
-                .map(|point| nalgebra::distance(&point, &center))
-                .fold(0.0, f64::max);
-            (center, radius)
+            let centers = members
+                .iter()
+                .map(|&member| residues.residues[member].center);
+            let coords = centers.clone().map(|point| point.coords);
+            let center = Point3::from(coords.sum::<Vector3<f64>>() / members.len() as f64);
+            let distances = centers.map(|point| nalgebra::distance(&point, &center));
+            (center, distances.fold(0.0, f64::max))
         };
         let ((center, radius), (other, other_radius)) =
             (ball(self.user, ours), ball(self.native, theirs));
@@ -350,11 +351,8 @@ impl<'a> Builder<'a> {
                 continue;
             }
             let mut nearest: Option<(f64, ChainPair)> = None;
-            for candidate in self
-                .candidates
-                .iter()
-                .filter(|known| known.pair.user == user)
-            {
+            let of_chain = self.candidates.iter().filter(|one| one.pair.user == user);
+            for candidate in of_chain {
                 let native = candidate.pair.native;
                 let theirs = &self.free[1][native];
                 let pair = if self.is_untouched(&candidate.pair) {
@@ -366,7 +364,7 @@ impl<'a> Builder<'a> {
                 if !is_distinctive(&pair) || (pair.pairs.len() as f64) < of_whole {
                     continue;
                 }
-                let points = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
+                let points = backbone_pairs(self.user, self.native, &pair.pairs);
                 let distance = Superposition::new(&points).rmsd(&self.motion);
                 if nearest.as_ref().is_none_or(|(other, _)| distance < *other) {
                     nearest = Some((distance, pair));
@@ -375,7 +373,7 @@ impl<'a> Builder<'a> {
             let Some((_, pair)) = nearest else {
                 continue;
             };
-            let added = backbone_pairs(self.user, self.native, pair.pairs.iter().copied());
+            let added = backbone_pairs(self.user, self.native, &pair.pairs);
             let points = [self.points.as_slice(), &added].concat();
             let all = Superposition::new(&points);
             let name = |native: usize| self.native.segments[native].chain();
@@ -405,12 +403,11 @@ impl<'a> Builder<'a> {
 /// Whether the two match the same residues of the native.
 fn shares_residues(a: &ChainPair, b: &ChainPair) -> bool {
     let natives: Vec<usize> = a.pairs.iter().map(|&(_, native)| native).collect();
-    b.pairs
+    let shared = b
+        .pairs
         .iter()
-        .filter(|(_, native)| natives.contains(native))
-        .count()
-        * 2
-        > b.pairs.len()
+        .filter(|(_, native)| natives.contains(native));
+    2 * shared.count() > b.pairs.len()
 }
 
 /// Whether the equal residues are too many to be equal by chance.

@@ -60,11 +60,7 @@ impl Residues {
         let mut chains: Vec<(&str, Vec<&Atom>)> = Vec::new();
         let mut places: HashMap<&str, usize> = HashMap::new();
         for atom in &molecule.atoms {
-            if !atom
-                .position
-                .iter()
-                .all(|coordinate| coordinate.is_finite())
-            {
+            if !atom.position.iter().all(|part| part.is_finite()) {
                 return Err(Error::input(format!(
                     "the {role} has an atom (line {}) whose coordinates are not finite",
                     atom.line
@@ -96,10 +92,8 @@ impl Residues {
 
     /// The residues with these indices.
     pub fn at(&self, members: &[usize]) -> Vec<&Residue> {
-        members
-            .iter()
-            .map(|&member| &self.residues[member])
-            .collect()
+        let members = members.iter();
+        members.map(|&member| &self.residues[member]).collect()
     }
 
     /// Names of the segments that are not used.
@@ -114,16 +108,10 @@ impl Residues {
     /// Cuts one chain's atoms into residues and appends them as one or more segments; `ends` are the lines at which
     /// the file ends a chain.
     fn add_chain(&mut self, name: &str, atoms: &[&Atom], ends: &[usize]) {
-        let found = without_free_nucleotides(
-            residue_runs(atoms)
-                .into_iter()
-                .filter_map(Residue::of)
-                .collect(),
-        );
-        for (piece, residues) in segments(in_bonded_order(found), ends)
-            .into_iter()
-            .enumerate()
-        {
+        let runs = residue_runs(atoms).into_iter();
+        let found = without_free_nucleotides(runs.filter_map(Residue::of).collect());
+        let pieces = segments(in_bonded_order(found), ends).into_iter();
+        for (piece, residues) in pieces.enumerate() {
             let first = self.residues.len();
             self.residues.extend(residues);
             let name = match piece {
@@ -153,28 +141,19 @@ impl Residues {
     }
 }
 
-/// Splits a chain's atoms where the residue changes, or where an atom name comes again: merged chains may meet between
-/// two residues of the same number and name.
+/// Splits a chain's atoms where the residue changes, or an atom name comes again: merged chains may meet between two
+/// residues of the same number and name.
 fn residue_runs<'a>(atoms: &'a [&'a Atom]) -> Vec<&'a [&'a Atom]> {
+    let residue = |atom: &'a Atom| (atom.residue_number, atom.insertion_code, &atom.residue_name);
     let mut runs = Vec::new();
     let mut start = 0;
     for index in 1..=atoms.len() {
-        let ends = match atoms.get(index) {
-            None => true,
-            Some(atom) => {
-                let first = atoms[start];
-                (
-                    first.residue_number,
-                    first.insertion_code,
-                    &first.residue_name,
-                ) != (atom.residue_number, atom.insertion_code, &atom.residue_name)
-                    || atoms[start..index]
-                        .iter()
-                        .any(|other| other.name == atom.name)
-            }
-        };
+        let run = &atoms[start..index];
+        let ends = atoms.get(index).is_none_or(|atom| {
+            residue(run[0]) != residue(atom) || run.iter().any(|other| other.name == atom.name)
+        });
         if ends {
-            runs.push(&atoms[start..index]);
+            runs.push(run);
             start = index;
         }
     }

@@ -49,7 +49,7 @@ impl Residue {
         self.backbone[..3].iter().all(Option::is_some)
     }
 
-    /// Whether it has what [`knotdock_structures::molecule::GroupKind`] takes for a nucleotide: P, C1', C3' and O3'.
+    /// Whether it is a nucleotide, as [`knotdock_structures::molecule::GroupKind`] has it: with P, C1', C3' and O3'.
     fn is_nucleotide(&self) -> bool {
         ["P", "C1'", "C3'", "O3'"].iter().all(|name| {
             let mut atoms = BACKBONE_ATOMS.iter().zip(&self.backbone);
@@ -57,45 +57,36 @@ impl Residue {
         })
     }
 
-    /// The residue made of these atoms, or nothing where they are no residue of a polymer.
+    /// The residue made of these atoms; `None` if they are no residue of a polymer.
     pub fn of(atoms: &[&Atom]) -> Option<Self> {
         let first = atoms.first()?;
-        let backbone = BACKBONE_ATOMS.map(|name| {
-            let atom = atoms
-                .iter()
-                .find(|atom| plain_atom_name(&atom.name) == name)?;
+        let mut backbone = BACKBONE_ATOMS.map(|name| {
+            let mut atoms = atoms.iter();
+            let atom = atoms.find(|atom| plain_atom_name(&atom.name) == name)?;
             Some(Point3::from(atom.position))
         });
         // The phosphate of a phosphoserine, say, is no backbone.
-        let mut backbone = backbone;
         if backbone[..3].iter().all(Option::is_some) {
             backbone[OF_PROTEINS..].fill(None);
         }
-        let heavy: Vec<_> = atoms
-            .iter()
-            .map(|atom| Point3::from(atom.position))
-            .collect();
+        let positions = atoms.iter().map(|atom| Point3::from(atom.position));
+        let heavy: Vec<Point3<f64>> = positions.collect();
         let sum: nalgebra::Vector3<f64> = heavy.iter().map(|point| point.coords).sum();
         let center = Point3::from(sum / heavy.len() as f64);
-        let radius = heavy
-            .iter()
-            .map(|point| nalgebra::distance(point, &center))
-            .fold(0.0, f64::max);
+        let distances = heavy.iter().map(|point| nalgebra::distance(point, &center));
+        let name = standard_residue_name(first.residue_name.trim(), atoms.iter().copied());
         let residue = Self {
             number: (first.residue_number, first.insertion_code),
-            kind: kind(standard_residue_name(
-                first.residue_name.trim(),
-                atoms.iter().copied(),
-            )),
+            kind: kind(name),
             backbone,
             hetero: first.hetero,
             lines: (
                 first.line,
                 atoms.last().map_or(first.line, |last| last.line),
             ),
+            radius: distances.fold(0.0, f64::max),
             heavy,
             center,
-            radius,
         };
         (!residue.hetero || residue.is_amino_acid() || residue.is_nucleotide()).then_some(residue)
     }

@@ -30,14 +30,14 @@ const MIN_PIECE: usize = 20;
 /// Fewest residues of a chain that does not begin with a number that comes again.
 const MIN_CHAIN: usize = 3;
 
-/// Where more than this share of consecutive residues is not bonded, bonds say nothing of chains: a crude model.
+/// If more than this share of consecutive residues is not bonded, bonds are no evidence of chains: a crude model.
 const BROKEN: f64 = 0.05;
 
 /// Longest C-N distance of a peptide bond in Å, with room for poor structures.
 const PEPTIDE_BOND: f64 = 2.5;
 /// CA-CA distances of neighbours in Å, for files that hold nothing else.
 const ALPHA_CARBONS: std::ops::RangeInclusive<f64> = 2.0..=5.0;
-/// Longest distance in Å of O3' from the next O5', where the phosphate between them is not in the file.
+/// Longest distance in Å of O3' from the next O5', if the phosphate between them is not in the file.
 const OXYGENS: f64 = 4.5;
 /// Most that a missing residue spans, in Å: an amino acid and a nucleotide.
 const SPANS: [f64; 2] = [3.8, 7.5];
@@ -224,7 +224,7 @@ mod tests {
         segments.map(|segment| segment.members.len()).collect()
     }
 
-    /// A chain of so many alanines from the given number on, `x` Å to the side.
+    /// A chain of `count` alanines from the given number on, `x` Å to the side.
     fn beside(first: i64, count: usize, x: f64) -> Vec<Atom> {
         let atoms = chain_of("A", &"A".repeat(count), &numbers(first, count));
         let aside = Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);

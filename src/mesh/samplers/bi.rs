@@ -10,8 +10,8 @@
 //! that weights fitted to S add up to several times one in its skin (8 times one, measured on a block).
 //! They are fitted a second time, to the grown solid.
 //!
-//! **Radii** are rounded to 24 equal steps before the fit, which takes up what that moves. Each function of
-//! the lifted axis then stands for one radius, exactly.
+//! **Radii** are rounded to 24 equal steps before the fit, which compensates for that. Each function of the lifted axis
+//! then represents one radius, exactly.
 //!
 //! # Lengths
 //!
@@ -26,7 +26,7 @@ use knotdock_structures::sampling::{Ball, SampleError};
 
 use super::{BallsToWeigh, PartToSample, WeightedBalls, union};
 
-/// By how much the part is grown before its density is fitted, in offsets.
+/// Growth of the part before its density is fitted, in offsets.
 pub const CORE: f64 = 0.17;
 /// Depth of the skin, in offsets.
 pub const SKIN: f64 = 0.5;
@@ -37,11 +37,11 @@ pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, Samp
     let grid = part.field.grid;
     let (core, skin) = (CORE * part.offset, SKIN * part.offset);
     let found = decompose(part.solid, part.field, &DecompositionOptions::default())?;
-    let mut balls: Vec<Ball> = found
+    let grown = found
         .a3
         .iter()
-        .map(|ball| ball.grown(core - grid.epsilon()))
-        .collect();
+        .map(|ball| ball.grown(core - grid.epsilon()));
+    let mut balls: Vec<Ball> = grown.collect();
     round_radii(&mut balls);
     let Some(bump) = part.fitted else {
         let weights = vec![1.0; balls.len()];
@@ -79,7 +79,7 @@ pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, Samp
     })
 }
 
-/// Balls of a file as they are, but for the rounding of radii: their weights are the file's where it has some.
+/// Balls of a file as they are, but for the rounding of radii: their weights are the file's if it has some.
 pub(in crate::mesh) fn of_balls(part: &BallsToWeigh) -> WeightedBalls {
     let (core, skin) = (CORE * part.offset, SKIN * part.offset);
     let mut balls: Vec<Ball> = part.balls.iter().map(|ball| ball.grown(core)).collect();
@@ -89,8 +89,8 @@ pub(in crate::mesh) fn of_balls(part: &BallsToWeigh) -> WeightedBalls {
     let fitted = |balls: &[Ball]| {
         let field = union(grid, balls);
         let volume = field.inside().len() as f64 * grid.spacing().powi(3);
-        part.fitted
-            .map(|bump| weights::fit(&field, balls, bump, volume))
+        let bump = part.fitted;
+        bump.map(|bump| weights::fit(&field, balls, bump, volume))
     };
     let fit = match part.weights {
         Some(_) => None,
@@ -114,9 +114,8 @@ pub(in crate::mesh) fn of_balls(part: &BallsToWeigh) -> WeightedBalls {
 /// Rounds radii to equal steps from the smallest to the largest.
 fn round_radii(balls: &mut [Ball]) {
     let radii = balls.iter().map(|ball| ball.radius);
-    let (low, high) = radii.fold((f64::INFINITY, 0.0f64), |(low, high), radius| {
-        (low.min(radius), high.max(radius))
-    });
+    let low = radii.clone().fold(f64::INFINITY, f64::min);
+    let high = radii.fold(0.0, f64::max);
     let step = (high - low) / (CLASSES - 1) as f64;
     if step > 0.0 {
         for ball in balls {

@@ -5,7 +5,7 @@
 //! outweigh the one that fills the middle.
 //!
 //! So these balls are of one radius, on a lattice. Weights are fitted so that their bumps add up to one inside and
-//! zero outside. The sum over pairs is then an integral over both volumes, however the lattices lie. The kernel is
+//! zero outside. The sum over pairs is then an integral over both volumes, for any position of the lattices. The kernel is
 //! that of molecules, B&I's cone, whose balls are all of about one size.
 //!
 //! # Lengths
@@ -20,7 +20,7 @@ use knotdock_structures::sampling::weights;
 
 use super::{PartToSample, RESOLUTION, WeightedBalls};
 
-/// Radius of the balls in offsets: 2.5 Å where the offset is 2.2 Å.
+/// Radius of the balls in offsets: 2.5 Å for an offset of 2.2 Å.
 pub const RADIUS: f64 = 2.5 / 2.2;
 /// Widest cell of the lattice in offsets: half the default resolution.
 const CELL: f64 = 0.5 * RESOLUTION;
@@ -30,17 +30,15 @@ pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, Samp
     let (offset, spacing) = (part.offset * unit, part.field.grid.spacing() * unit);
     let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);
     let balls = lattice(part.field, per_cell, RADIUS * offset / unit);
-    let fit = part
-        .fitted
-        .map(|bump| weights::fit(part.field, &balls, bump, part.volume()));
-    // A ball without weight would only cost time.
+    let bump = part.fitted;
+    let fit = bump.map(|bump| weights::fit(part.field, &balls, bump, part.volume()));
     let weight = |place: usize| fit.as_ref().map_or(1.0, |fit| fit.weights[place]);
-    let (balls, weights) = balls
+    let weighted = balls
         .into_iter()
         .enumerate()
-        .map(|(place, ball)| (ball, weight(place)))
-        .filter(|(_, weight)| *weight > 0.0)
-        .unzip();
+        .map(|(place, ball)| (ball, weight(place)));
+    // A ball without weight would only cost time.
+    let (balls, weights) = weighted.filter(|(_, weight)| *weight > 0.0).unzip();
     Ok(WeightedBalls {
         balls,
         weights,

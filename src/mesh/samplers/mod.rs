@@ -3,9 +3,6 @@
 pub mod bi;
 pub mod lattice;
 
-use std::fmt;
-use std::str::FromStr;
-
 use knotdock_structures::mesh::Solid;
 use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampling::Ball;
@@ -61,7 +58,7 @@ impl Sampler {
 /// Default resolution in offsets: that of molecules.
 pub const RESOLUTION: f64 = 4.5 / 2.2;
 
-/// Balls of a file about the origin, with what a sampler needs of them. Lengths in the file's unit.
+/// Balls of a file about the origin, as samplers read them. Lengths in the file's unit.
 pub(super) struct BallsToWeigh<'a> {
     pub balls: Vec<Ball>,
     /// Weights of the file; `None`: they are fitted.
@@ -73,7 +70,7 @@ pub(super) struct BallsToWeigh<'a> {
     pub fitted: Option<Bump>,
 }
 
-/// Which nodes lie in a union of balls: depth one inside and minus one outside.
+/// The nodes in a union of balls: depth one inside and minus one outside.
 pub(super) fn union(grid: Grid, balls: &[Ball]) -> DepthField {
     let mut depth = vec![-1.0; grid.nodes()];
     for ball in balls {
@@ -82,7 +79,7 @@ pub(super) fn union(grid: Grid, balls: &[Ball]) -> DepthField {
     DepthField { grid, depth }
 }
 
-/// A solid with what a sampler needs of it.
+/// A solid as samplers read it.
 pub(super) struct PartToSample<'a> {
     pub solid: &'a Solid,
     /// Depths on the grid.
@@ -94,8 +91,7 @@ pub(super) struct PartToSample<'a> {
 }
 
 impl PartToSample<'_> {
-    /// Volume of the solid, in its unit cubed: exact where the surface is closed. An open one has as much as its grid
-    /// says.
+    /// Volume of the solid, in its unit cubed: exact if the surface is closed, else that of its grid.
     pub fn volume(&self) -> f64 {
         match self.solid.mesh().is_closed() {
             true => self.solid.mesh().volume(),
@@ -110,28 +106,12 @@ pub(super) struct WeightedBalls {
     pub weights: Vec<f64>,
     /// Weights of the balls grown by the skin; empty where the sampler has none.
     pub skin_weights: Vec<f64>,
-    /// Nodes along each edge of a cell, where balls lie on a lattice.
+    /// Nodes along each edge of a cell, for balls on a lattice.
     pub per_cell: Option<usize>,
-    /// How the weights were fitted, where they were.
+    /// The fit of the weights, if they were fitted.
     pub fit: Option<FittedWeights>,
-    /// How those of the skin were.
+    /// The fit of the skin's weights.
     pub skin_fit: Option<FittedWeights>,
-}
-
-impl fmt::Display for Sampler {
-    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.write_str(self.name())
-    }
-}
-
-impl FromStr for Sampler {
-    type Err = String;
-
-    fn from_str(text: &str) -> Result<Self, String> {
-        let samplers = [Self::Lattice, Self::Bi];
-        let named = samplers.into_iter().find(|sampler| sampler.name() == text);
-        named.ok_or_else(|| "there is no such sampler; choose lattice or bi".to_owned())
-    }
 }
 
 #[cfg(test)]
@@ -141,11 +121,8 @@ mod tests {
     #[test]
     fn names_are_those_of_records() {
         for sampler in [Sampler::Lattice, Sampler::Bi] {
-            assert_eq!(sampler.name().parse(), Ok(sampler));
             let record = serde_json::to_string(&sampler).unwrap();
             assert_eq!(record, format!("{:?}", sampler.name()));
         }
-        let error = "voxels".parse::<Sampler>().unwrap_err();
-        assert!(error.contains("lattice or bi"));
     }
 }

@@ -1,47 +1,46 @@
 //! Files added to a run that is there, or to another folder.
 //!
-//! They are written in a folder of their own first, and each takes its place by one rename when all of them are on the
-//! device. A file that is there with the same content stays. One that differs is replaced if the run's records show
-//! that nobody has changed it, or on request. What is added to a run is listed in its `added.json`.
+//! They are written in a separate folder first, and each takes its place by one rename when all of them are on the device.
+//! A file with the same content stays. One that differs is replaced if the run's records show that nobody has changed it,
+//! or on request. The `added.json` of a run lists its additions.
 
-use crate::output::files::file_error;
-use knotdock_structures::Error;
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io;
 use std::path::{Path, PathBuf};
 
+use knotdock_structures::Error;
 use serde_json::{Value, json};
 
 use crate::bounded_read::{MAX_RECORD, read_bounded_file};
 
 use super::checksum::sha256_of_file;
-use super::disk;
 use super::lock::Lock;
 use super::own_files::{ADDED, ENSEMBLE, OwnFiles, is_of_us, is_run, name_of};
 use super::seal::REPORT;
-use super::staging::{Made, Stage, locked};
+use super::staging::{NewFolders, Stage, locked};
 use super::whole_file::{is_link, leftovers, parent, to_json, write_whole};
+use super::{disk, file_error};
 
 /// Files that are being added.
 #[derive(Debug)]
 pub struct Addition {
-    /// Where they go.
+    /// Their folder.
     folder: PathBuf,
     stage: Stage,
-    /// The run, without links, where they go into it.
+    /// The run that the folder is in, without links.
     run: Option<PathBuf>,
-    /// What commands that were ended left beside the run or the folder.
+    /// Leftovers of ended commands beside the run or the folder.
     pub leftovers: Vec<PathBuf>,
     _lock: Option<Lock>,
-    made: Made,
+    made: NewFolders,
 }
 
 impl Addition {
-    /// Files for a folder. Where it lies in the directory of `run`, that is locked.
+    /// Files for a folder. If it is in the directory of `run`, that is locked.
     ///
     /// # Errors
-    /// [`Error`] where the folder is a link or cannot be made, and where another command writes to the run.
+    /// [`Error`] for a folder that is a link or cannot be made, and if another command writes to the run.
     pub fn open(folder: &Path, run: Option<&Path>) -> Result<Self, Error> {
         let plain: PathBuf = folder.components().collect();
         if is_link(&plain) {
@@ -52,13 +51,13 @@ impl Addition {
             (Some(folder), Some(run)) => folder.starts_with(run),
             _ => false,
         });
-        let (mut place, mut made, mut lock) = (None, Made::default(), None);
+        let (mut place, mut made, mut lock) = (None, NewFolders::default(), None);
         if let Some(run) = run {
             let (found, above, held) = locked(run)?;
             (place, made, lock) = (Some(found), above, Some(held));
         }
-        made.0
-            .extend(disk::create_dir_all(&plain).map_err(unwritable)?);
+        let new = disk::create_dir_all(&plain).map_err(unwritable)?;
+        made.0.extend(new);
         // Beside a run, so that nothing but a run's files is ever in it.
         let inner = plain.join("files");
         let beside = place.as_deref().unwrap_or(&inner);
@@ -72,15 +71,15 @@ impl Addition {
         })
     }
 
-    /// What is written to.
+    /// The folder to write to.
     pub fn stage(&self) -> &Stage {
         &self.stage
     }
 
-    /// Moves the files into their places. With `force` those that are there are replaced, though they were edited.
+    /// Moves the files into their places. With `force` those that were edited are replaced, too.
     ///
     /// # Errors
-    /// [`Error`]; of files that must not be replaced before anything is moved.
+    /// [`Error`]; for files that must not be replaced, before anything is moved.
     pub fn place(mut self, force: bool) -> Result<(), Error> {
         let failed = |source| file_error::writing(&self.folder, source);
         let new = self.stage.folder();
@@ -108,31 +107,23 @@ impl Addition {
                 added.insert(name_of(&in_run), checksum);
             }
         }
-        // An ensemble that is not finished has no record yet, and its own will list these.
+        // An ensemble that is not finished has no record yet; its record will list these.
         if let Some(run) = &self.run
             && !moves.is_empty()
             && is_run(run)
         {
             self.note(run, added)?;
         }
-        // A record comes last: where it is, all is.
+        // A record comes last: it shows that all files are there.
         moves.sort_by_key(|(_, to)| to.file_name() == Some(ENSEMBLE.as_ref()));
         for (from, to) in &moves {
-            let moved = disk::create_dir_all(to.parent().unwrap_or(&self.folder))
-                .and_then(|_| match to.symlink_metadata() {
-                    Ok(there) => disk::set_permissions(from, there.permissions())
-                        .and_then(|()| disk::rename(from, to)),
-                    Err(_) => disk::rename_new(from, to),
-                })
-                .and_then(|()| disk::sync(to.parent().unwrap_or(&self.folder)));
-            moved.map_err(|source| file_error::writing(to, source))?;
+            move_to(from, to).map_err(|source| file_error::writing(to, source))?;
         }
         self.made.0.clear();
         Ok(())
     }
 
-    /// Adds files to the list of those that were added to a run. It comes before them: a file that is listed and not
-    /// there does no harm.
+    /// Adds files to the list of a run's additions. It comes before them: a listed file that is missing does no harm.
     fn note(&self, run: &Path, added: BTreeMap<String, String>) -> Result<(), Error> {
         let path = run.join(ADDED);
         if path.symlink_metadata().is_ok() && !is_of_us(&path) {
@@ -155,10 +146,21 @@ impl Addition {
     }
 }
 
-/// Writes a file that the user named, whole; into a run's directory as an addition. What ended commands left there.
-///
-/// # Errors
-/// [`Error`].
+/// Moves a file, to the device, into its place; one that is replaced leaves its mode.
+fn move_to(from: &Path, to: &Path) -> io::Result<()> {
+    disk::create_dir_all(parent(to))?;
+    match to.symlink_metadata() {
+        Ok(there) => {
+            disk::set_permissions(from, there.permissions())?;
+            disk::rename(from, to)?;
+        }
+        Err(_) => disk::rename_new(from, to)?,
+    }
+    disk::sync(parent(to))
+}
+
+/// Writes a file that the user named, whole; into a run's directory as an addition. Returns the leftovers of ended commands
+/// there.
 pub fn write_named(
     path: &Path,
     fill: impl FnOnce(&mut dyn io::Write) -> io::Result<()>,
@@ -174,36 +176,27 @@ pub fn write_named(
 }
 
 /// Copies files into a run's directory as additions.
-///
-/// # Errors
-/// [`Error`].
 pub fn add_files(run: &Path, files: &[PathBuf]) -> Result<(), Error> {
     let addition = Addition::open(run, Some(run))?;
     for path in files {
         let mut file = File::open(path).map_err(|source| file_error::reading(path, source))?;
         let name = path.file_name().unwrap_or_default().to_string_lossy();
-        addition
-            .stage
-            .write(&name, |copy| io::copy(&mut file, copy).map(drop))?;
+        let copied = |copy: &mut dyn io::Write| io::copy(&mut file, copy).map(drop);
+        addition.stage.write(&name, copied)?;
     }
     addition.place(false)
 }
 
-/// A path without links, as far as it is there.
+/// A path without links, as far as it exists.
 fn resolved(path: &Path) -> Option<PathBuf> {
     let whole = std::path::absolute(path).ok()?;
-    let mut above = whole.ancestors();
-    above.find_map(|above| {
-        Some(
-            above
-                .canonicalize()
-                .ok()?
-                .join(whole.strip_prefix(above).ok()?),
-        )
+    whole.ancestors().find_map(|above| {
+        let rest = whole.strip_prefix(above).ok()?;
+        Some(above.canonicalize().ok()?.join(rest))
     })
 }
 
-/// Whether a file of a checksum is to be moved to a place: not where it is there already.
+/// Whether a file with a checksum is to be moved to a place: not if it is there already.
 fn is_to_move(to: &Path, checksum: &str, may_replace: bool) -> Result<bool, Error> {
     let Ok(there) = to.symlink_metadata() else {
         return Ok(true);

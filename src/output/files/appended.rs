@@ -11,8 +11,8 @@ use super::fault::point;
 
 /// A file to which entries are appended, each to the device before the next.
 ///
-/// An entry that is cut short, by a kill or a full disk, is no entry: whoever opens the file knows where the last whole
-/// one ends, and what follows is cut off.
+/// An entry that is cut short, by a kill or a full disk, is no entry: the next caller opens the file at the end of the last
+/// whole one, and the rest is cut off.
 #[derive(Debug)]
 pub struct AppendedFile {
     file: File,
@@ -21,23 +21,17 @@ pub struct AppendedFile {
 }
 
 impl AppendedFile {
-    /// Opens a file after its first `length` bytes; the rest is cut off. A file that is not there is made; no link is
-    /// followed.
-    ///
-    /// # Errors
-    /// [`Error`] where it cannot be opened or cut.
+    /// Opens a file after its first `length` bytes; the rest is cut off. A missing file is made; no link is followed.
     pub fn open(path: &Path, length: u64) -> Result<Self, Error> {
         let failed = |source| file_error::unwritable(path, source);
         point("open", path).map_err(failed)?;
-        let made = disk::create(path);
-        let mut file = match made {
+        let mut file = match disk::create(path) {
             Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {
                 let file = disk::open(path, File::options().write(true)).map_err(failed)?;
-                let is_alone = disk::has_one_name(&file).map_err(failed)?;
-                match is_alone {
-                    true => file,
-                    false => return Err(failed(io::Error::other("it has another name, too"))),
+                if !disk::has_one_name(&file).map_err(failed)? {
+                    return Err(failed(io::Error::other("it has another name, too")));
                 }
+                file
             }
             made => made.map_err(failed)?,
         };
@@ -56,19 +50,16 @@ impl AppendedFile {
         })
     }
 
-    /// Where the next entry begins, in bytes.
+    /// Start of the next entry, in bytes.
     pub fn end(&self) -> u64 {
         self.length
     }
 
-    /// Appends an entry, to the device; where it begins and ends. One that cannot be written whole is taken back.
-    ///
-    /// # Errors
-    /// [`Error`].
+    /// Appends an entry, to the device; returns its start and end. One that cannot be written whole is taken back.
     pub fn append(&mut self, entry: &[u8]) -> Result<(u64, u64), Error> {
         let written = self.write(entry);
         if written.is_err() {
-            // What cannot be taken back now is cut off when the file is opened again.
+            // A rest that stays is cut off when the file is opened again.
             let _ = self.file.set_len(self.length);
             let _ = self.file.seek(SeekFrom::Start(self.length));
         }

@@ -1,4 +1,4 @@
-//! Assemblies: two meshes in one OBJ file, the receptor as it was and the ligand in its place, one file a rank.
+//! Assemblies: two meshes in one OBJ file, the receptor as it was and the ligand in its place, one file per rank.
 //!
 //! The parts are the groups `receptor` and `ligand`. Coordinates are in the unit of the mesh files and in the
 //! receptor's frame, in the shortest digits that read back to the same f64. Vertices are those that were docked:
@@ -93,7 +93,7 @@ fn write_assembly(
     Ok(())
 }
 
-/// Writes a part behind `before` vertices, and returns how many there are then.
+/// Writes a part after `before` vertices; returns the new number of vertices.
 fn write_part(
     file: &mut dyn io::Write,
     name: &str,

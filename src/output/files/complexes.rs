@@ -1,4 +1,4 @@
-//! Complexes: the receptor as it was and the ligand in its place, one file a rank; of rings all copies.
+//! Complexes: the receptor as it was and the ligand in its place, one file per rank; for rings, all copies.
 
 use crate::output::files::file_error;
 use knotdock_structures::Error;
@@ -6,10 +6,12 @@ use std::io;
 use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
-use knotdock_structures::molecule::{ChainMap, Format, Molecule, complex_format, write_complex};
+use knotdock_structures::molecule::{
+    ChainMap, Format, Molecule, complex_format, write_complex, write_renamed,
+};
 
 use crate::output::files::disk;
-use crate::output::files::whole_file::write_new;
+use crate::output::files::whole_file::{write_new, write_whole};
 use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
@@ -45,13 +47,13 @@ pub fn complex(
     })
 }
 
-/// Complexes as written.
+/// Bodies as written.
 #[derive(Clone, Debug)]
-pub struct Written {
+pub struct WrittenBodies {
     /// Names of the files, in the order of the rows.
     pub names: Vec<String>,
-    /// Which chain of which input has which name in them; it is the same in all.
-    pub chains: ChainMap,
+    /// Which chain of which input has which name in the complexes, which is the same in all; `None` for solids.
+    pub chains: Option<ChainMap>,
 }
 
 /// Name of the file that shows the complex, or of meshes the assembly, of a rank.
@@ -77,39 +79,29 @@ pub fn write_complexes(
     rows: &[PoseRow],
     note: &str,
     (folder, wanted): (&Path, Option<Format>),
-) -> Result<Written, Error> {
+) -> Result<WrittenBodies, Error> {
     if !rows.is_empty() {
         disk::create_dir_all(folder).map_err(|source| file_error::unwritable(folder, source))?;
     }
-    let poses = |row: &PoseRow| {
-        let images = arrangement.images(&row.pose);
-        images.ok_or_else(|| no_ring(arrangement, row, folder))
-    };
-    let copies = rows.iter().map(poses).collect::<Result<Vec<_>, _>>()?;
-    // Placed molecules are made twice, once to see whether they fit and once to be written: many at once may not fit
-    // into the memory.
-    let placed = |poses: &Vec<Pose>| -> Vec<Molecule> {
-        let moved = |pose: &Pose| ligand.map_positions(|position| pose.apply(position));
-        poses.iter().map(moved).collect()
-    };
-    let fits = copies
-        .iter()
-        .all(|poses| complex_format(&with(receptor, &placed(poses))) == Format::Pdb);
-    let unplaced = match rows {
-        [] => vec![ligand.clone(); arrangement.placed()],
-        _ => Vec::new(),
-    };
+    let placed = |row: &PoseRow| placed_copies(ligand, arrangement, row, folder);
+    // Placed molecules are made twice, for their format and for the file: all at once may not fit into the memory.
+    let mut fits = true;
+    for row in rows {
+        fits &= complex_format(&with(receptor, &placed(row)?)) == Format::Pdb;
+    }
+    // Without complexes the names of chains are those that they would have.
+    let unplaced = || vec![ligand.clone(); arrangement.placed()];
     let format = match rows {
-        _ if wanted.is_some() => wanted.unwrap_or(Format::Mmcif),
-        [] => complex_format(&with(receptor, &unplaced)),
+        [] => complex_format(&with(receptor, &unplaced())),
         _ if fits => Format::Pdb,
         _ => Format::Mmcif,
     };
+    let format = wanted.unwrap_or(format);
     let mut chains = None;
     let mut names = Vec::new();
-    for (row, poses) in rows.iter().zip(&copies) {
+    for row in rows {
         let name = file_name(row.rank, format.extension());
-        let others = placed(poses);
+        let others = placed(row)?;
         let remarks = remarks(row, arrangement, note);
         let path = folder.join(&name);
         let written = write_new(&path, |mut file| {
@@ -120,44 +112,35 @@ pub fn write_complexes(
         written.map_err(|source| file_error::writing(&path, source))?;
         names.push(name);
     }
-    let chains = match chains {
-        Some(chains) => chains,
-        // No complex was requested: the names are what they would have been.
-        None => write_complex(&mut io::sink(), format, &with(receptor, &unplaced), &[])
-            .map_err(|error| file_error::writing(folder, error))?,
-    };
-    Ok(Written { names, chains })
+    if chains.is_none() {
+        let map = write_complex(&mut io::sink(), format, &with(receptor, &unplaced()), &[]);
+        chains = Some(map.map_err(|error| file_error::writing(folder, error))?);
+    }
+    Ok(WrittenBodies { names, chains })
 }
 
-/// What a pose places about the receptor: the ligand, or of a ring all copies but the receptor.
+/// The molecules that a pose places about the receptor: the ligand, or all copies of a ring but the receptor.
 ///
 /// # Errors
-/// [`Error`] where the pose is not one of such a ring.
+/// [`Error`] if the pose is not one of such a ring.
 pub(crate) fn placed_copies(
     ligand: &Molecule,
     arrangement: Arrangement,
     row: &PoseRow,
     folder: &Path,
 ) -> Result<Vec<Molecule>, Error> {
-    let images = arrangement.images(&row.pose);
-    let poses = images.ok_or_else(|| no_ring(arrangement, row, folder))?;
+    let poses = arrangement.images(&row.pose).ok_or_else(|| {
+        let (rank, suffix) = (row.rank, arrangement.suffix());
+        let error = io::Error::other(format!("the pose of rank {rank} forms no ring{suffix}"));
+        file_error::writing(folder, error)
+    })?;
     let moved = |pose: &Pose| ligand.map_positions(|position| pose.apply(position));
     Ok(poses.iter().map(moved).collect())
 }
 
 /// The molecules of a complex: the receptor, and those placed about it.
-fn with<'a>(receptor: &'a Molecule, others: &'a [Molecule]) -> Vec<&'a Molecule> {
+pub(crate) fn with<'a>(receptor: &'a Molecule, others: &'a [Molecule]) -> Vec<&'a Molecule> {
     std::iter::once(receptor).chain(others).collect()
-}
-
-/// The error of a row whose pose forms no ring.
-fn no_ring(arrangement: Arrangement, row: &PoseRow, folder: &Path) -> Error {
-    let error = io::Error::other(format!(
-        "the pose of rank {} forms no ring{}",
-        row.rank,
-        arrangement.suffix()
-    ));
-    file_error::writing(folder, error)
 }
 
 /// Remarks of a complex: its origin, and how its ligand, or each copy of a ring from the one before it, was moved.
@@ -165,13 +148,34 @@ fn remarks(row: &PoseRow, arrangement: Arrangement, note: &str) -> Vec<String> {
     let [w, x, y, z] = row.pose.quaternion();
     let t = row.pose.translation;
     let rank = format!("rank {}{}{note}", row.rank, arrangement.suffix());
-    let what = match arrangement.moved() {
+    let moved = match arrangement.moved() {
         "copy" => "each copy",
-        moved => moved,
+        other => other,
     };
     vec![
         format!("knotdock {VERSION}, {rank}"),
-        format!("{what} turned by (w x y z) {w:.6} {x:.6} {y:.6} {z:.6}"),
+        format!("{moved} turned by (w x y z) {w:.6} {x:.6} {y:.6} {z:.6}"),
         format!("then moved by {:.3} {:.3} {:.3} A", t.x, t.y, t.z),
     ]
+}
+
+/// The format of a file's name: `.pdb` or `.ent`, `.cif` or `.mmcif`; `None` for other endings.
+pub fn format_of_name(path: &Path) -> Option<Format> {
+    let ending = path.extension()?.to_str()?.to_ascii_lowercase();
+    match ending.as_str() {
+        "pdb" | "ent" => Some(Format::Pdb),
+        "cif" | "mmcif" => Some(Format::Mmcif),
+        _ => None,
+    }
+}
+
+/// Writes the atoms that were kept, whole or not at all. Chains keep their names if the format can hold them.
+pub fn write_kept_atoms(path: &Path, format: Format, molecule: &Molecule) -> Result<(), Error> {
+    let remark = format!(
+        "knotdock {VERSION}, what was read of {}",
+        molecule.report.file
+    );
+    write_whole(path, |mut file| {
+        write_renamed(&mut file, format, molecule, &[remark])
+    })
 }

@@ -9,17 +9,11 @@ use std::path::{Path, PathBuf};
 
 use super::fault::point;
 
-/// Makes a file that was not there, with the mode that the process gives to new files.
-///
-/// # Errors
-/// What the system says; [`io::ErrorKind::AlreadyExists`] where something has the name.
+/// Makes a file with the mode that the process gives to new files; [`io::ErrorKind::AlreadyExists`] if something has the
+/// name.
 pub(super) fn create(path: &Path) -> io::Result<File> {
     point("create", path)?;
-    File::options()
-        .read(true)
-        .write(true)
-        .create_new(true)
-        .open(path)
+    File::create_new(path)
 }
 
 /// Makes a folder that was not there.
@@ -28,7 +22,7 @@ pub(super) fn create_dir(path: &Path) -> io::Result<()> {
     fs::create_dir(path)
 }
 
-/// Makes a folder and those above it, where they are not there; the new ones, from the top.
+/// Makes a folder and those above it that are missing; returns the new ones, from the top.
 pub(super) fn create_dir_all(path: &Path) -> io::Result<Vec<PathBuf>> {
     let is_missing = |folder: &&Path| !folder.as_os_str().is_empty() && !folder.is_dir();
     let missing: Vec<&Path> = path.ancestors().take_while(is_missing).collect();
@@ -80,13 +74,11 @@ pub(super) fn rename(from: &Path, to: &Path) -> io::Result<()> {
     fs::rename(from, to)
 }
 
-/// Moves a file or folder within a file system to a name that nothing has.
-///
-/// # Errors
-/// [`io::ErrorKind::AlreadyExists`] where something has the name.
+/// Moves a file or folder within a file system to a name that nothing has; [`io::ErrorKind::AlreadyExists`] if something
+/// has it.
 pub(super) fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
     point("rename", to)?;
-    match system::rename_new(from, to) {
+    match rename_with(Rename::New, from, to) {
         Err(error) if is_unsupported(&error) => {
             // Between the look and the move another process could take the name; there is no better way there.
             if to.symlink_metadata().is_ok() {
@@ -98,13 +90,37 @@ pub(super) fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
     }
 }
 
-/// Exchanges two files or folders of a file system at one stroke.
-///
-/// # Errors
-/// See [`is_unsupported`] for systems that cannot do it.
+/// Exchanges two files or folders of a file system at one stroke. See [`is_unsupported`] for systems that cannot do it.
 pub(super) fn exchange(one: &Path, other: &Path) -> io::Result<()> {
     point("exchange", other)?;
-    system::exchange(one, other)
+    // So that tests take the way of systems without it.
+    if cfg!(debug_assertions) && std::env::var_os("KNOTDOCK_NO_EXCHANGE").is_some() {
+        return Err(io::ErrorKind::Unsupported.into());
+    }
+    rename_with(Rename::Exchange, one, other)
+}
+
+/// Ways to rename that `std` lacks.
+enum Rename {
+    New,
+    Exchange,
+}
+
+/// Renames in a way that only some systems have.
+#[cfg(any(target_os = "linux", target_os = "android", target_os = "macos"))]
+fn rename_with(way: Rename, from: &Path, to: &Path) -> io::Result<()> {
+    use rustix::fs::{CWD, RenameFlags, renameat_with};
+    let flags = match way {
+        Rename::New => RenameFlags::NOREPLACE,
+        Rename::Exchange => RenameFlags::EXCHANGE,
+    };
+    Ok(renameat_with(CWD, from, CWD, to, flags)?)
+}
+
+/// Renames in a way that this system does not have.
+#[cfg(not(any(target_os = "linux", target_os = "android", target_os = "macos")))]
+fn rename_with(_: Rename, _: &Path, _: &Path) -> io::Result<()> {
+    Err(io::ErrorKind::Unsupported.into())
 }
 
 /// Whether an error says that the system or the file system knows no such operation.
@@ -131,48 +147,34 @@ pub(super) fn remove_dir(path: &Path) -> io::Result<()> {
 /// Removes a folder with all that is in it. Links are removed, not followed.
 pub(super) fn remove_tree(folder: &Path) -> io::Result<()> {
     for (path, is_folder) in entries(folder)? {
-        if is_folder {
-            remove_tree(&path)?;
-        } else {
-            remove_file(&path)?;
-        }
+        let remove = if is_folder { remove_tree } else { remove_file };
+        remove(&path)?;
     }
     remove_dir(folder)
 }
 
 /// The entries of a folder in the order of their names, each with whether it is a folder itself and no link.
 pub(super) fn entries(folder: &Path) -> io::Result<Vec<(PathBuf, bool)>> {
-    let mut entries = fs::read_dir(folder)?
-        .map(|entry| {
-            let entry = entry?;
-            Ok((entry.path(), entry.file_type()?.is_dir()))
-        })
-        .collect::<io::Result<Vec<_>>>()?;
+    let entries = fs::read_dir(folder)?.map(|entry| {
+        let entry = entry?;
+        Ok((entry.path(), entry.file_type()?.is_dir()))
+    });
+    let mut entries: Vec<_> = entries.collect::<io::Result<_>>()?;
     entries.sort();
     Ok(entries)
 }
 
 /// The files below a folder, links among them, by their paths from it, in order; folders that are empty too.
 pub(super) fn tree(folder: &Path) -> io::Result<Vec<PathBuf>> {
-    fn below(folder: &Path, root: &Path, found: &mut Vec<PathBuf>) -> io::Result<()> {
-        let entries = entries(folder)?;
-        if entries.is_empty()
-            && let Ok(empty) = folder.strip_prefix(root)
-            && folder != root
-        {
-            found.push(empty.to_owned());
-        }
-        for (path, is_folder) in entries {
-            if is_folder {
-                below(&path, root, found)?;
-            } else if let Ok(file) = path.strip_prefix(root) {
-                found.push(file.to_owned());
-            }
-        }
-        Ok(())
-    }
     let mut found = Vec::new();
-    below(folder, folder, &mut found)?;
+    for (path, is_folder) in entries(folder)? {
+        let name = PathBuf::from(path.file_name().unwrap_or_default());
+        let inner = if is_folder { tree(&path)? } else { Vec::new() };
+        match inner.is_empty() {
+            true => found.push(name),
+            false => found.extend(inner.iter().map(|inner| name.join(inner))),
+        }
+    }
     Ok(found)
 }
 
@@ -193,11 +195,8 @@ pub(super) fn sync(path: &Path) -> io::Result<()> {
 /// Has a folder and all that is in it written to the device.
 pub(super) fn sync_tree(folder: &Path) -> io::Result<()> {
     for (path, is_folder) in entries(folder)? {
-        if is_folder {
-            sync_tree(&path)?;
-        } else {
-            sync(&path)?;
-        }
+        let sync = if is_folder { sync_tree } else { sync };
+        sync(&path)?;
     }
     sync(folder)
 }
@@ -206,42 +205,6 @@ pub(super) fn sync_tree(folder: &Path) -> io::Result<()> {
 pub(super) fn set_permissions(path: &Path, permissions: Permissions) -> io::Result<()> {
     point("chmod", path)?;
     fs::set_permissions(path, permissions)
-}
-
-/// Renames with flags, where the system has them.
-#[cfg(any(target_os = "linux", target_os = "android", target_os = "macos"))]
-mod system {
-    use std::io;
-    use std::path::Path;
-
-    use rustix::fs::{CWD, RenameFlags, renameat_with};
-
-    pub fn rename_new(from: &Path, to: &Path) -> io::Result<()> {
-        Ok(renameat_with(CWD, from, CWD, to, RenameFlags::NOREPLACE)?)
-    }
-
-    pub fn exchange(one: &Path, other: &Path) -> io::Result<()> {
-        // So that tests take the way of systems without it.
-        if cfg!(debug_assertions) && std::env::var_os("KNOTDOCK_NO_EXCHANGE").is_some() {
-            return Err(io::ErrorKind::Unsupported.into());
-        }
-        Ok(renameat_with(CWD, one, CWD, other, RenameFlags::EXCHANGE)?)
-    }
-}
-
-/// Renames with flags, where the system has none.
-#[cfg(not(any(target_os = "linux", target_os = "android", target_os = "macos")))]
-mod system {
-    use std::io;
-    use std::path::Path;
-
-    pub fn rename_new(_: &Path, _: &Path) -> io::Result<()> {
-        Err(io::ErrorKind::Unsupported.into())
-    }
-
-    pub fn exchange(_: &Path, _: &Path) -> io::Result<()> {
-        Err(io::ErrorKind::Unsupported.into())
-    }
 }
 
 #[cfg(test)]

@@ -5,57 +5,34 @@
 //! the program fail there.
 //! `KNOTDOCK_FAULT_LOG` names a file to which each change adds a line: its kind, a tab and its path.
 
-use std::io;
+use std::fs::File;
+use std::io::{self, Write};
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
-/// Announces a change of the disk just before it is made.
-///
-/// # Errors
-/// The failure on purpose.
-#[cfg(debug_assertions)]
+/// Announces a change of the disk just before it is made; fails if a test requests that.
+#[allow(
+    clippy::panic,
+    reason = "a panic on purpose, for tests of what becomes of it"
+)]
 pub(super) fn point(kind: &str, path: &Path) -> io::Result<()> {
-    debug::point(kind, path)
-}
-
-/// Announces a change of the disk: without debug assertions there are no faults.
-///
-/// # Errors
-/// None.
-#[cfg(not(debug_assertions))]
-#[inline]
-pub(super) fn point(_: &str, _: &Path) -> io::Result<()> {
-    Ok(())
-}
-
-#[cfg(debug_assertions)]
-mod debug {
-    use std::fs::File;
-    use std::io::{self, Write};
-    use std::path::Path;
-    use std::sync::atomic::{AtomicUsize, Ordering};
-
     static CHANGES: AtomicUsize = AtomicUsize::new(0);
-
-    #[allow(
-        clippy::panic,
-        reason = "a panic on purpose, for tests of what becomes of it"
-    )]
-    pub(super) fn point(kind: &str, path: &Path) -> io::Result<()> {
-        let change = 1 + CHANGES.fetch_add(1, Ordering::SeqCst);
-        if let Some(log) = std::env::var_os("KNOTDOCK_FAULT_LOG") {
-            let line = format!("{kind}\t{}\n", path.display());
-            let mut log = File::options().append(true).create(true).open(log)?;
-            log.write_all(line.as_bytes())?;
-        }
-        let fault = std::env::var("KNOTDOCK_FAULT").unwrap_or_default();
-        match fault.split_once(' ') {
-            Some((kind, number)) if number.parse() == Ok(change) => match kind {
-                // Nothing is flushed or removed on the way out, as after a kill.
-                "kill" => std::process::exit(137),
-                "panic" => panic!("a panic on purpose"),
-                _ => Err(io::ErrorKind::StorageFull.into()),
-            },
-            _ => Ok(()),
-        }
+    if !cfg!(debug_assertions) {
+        return Ok(());
+    }
+    let change = 1 + CHANGES.fetch_add(1, Ordering::SeqCst);
+    if let Some(log) = std::env::var_os("KNOTDOCK_FAULT_LOG") {
+        let mut log = File::options().append(true).create(true).open(log)?;
+        log.write_all(format!("{kind}\t{}\n", path.display()).as_bytes())?;
+    }
+    let fault = std::env::var("KNOTDOCK_FAULT").unwrap_or_default();
+    match fault.split_once(' ') {
+        Some((kind, number)) if number.parse() == Ok(change) => match kind {
+            // Nothing is flushed or removed on the way out, as after a kill.
+            "kill" => std::process::exit(137),
+            "panic" => panic!("a panic on purpose"),
+            _ => Err(io::ErrorKind::StorageFull.into()),
+        },
+        _ => Ok(()),
     }
 }

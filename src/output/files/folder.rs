@@ -1,4 +1,4 @@
-//! Folders and files that are this program's own: made, cleared, and read without following links, waiting for pipes or taking more than a
+//! Folders and files of this program: made, cleared, and read without following links, waiting for pipes or exceeding a
 //! bound.
 
 use crate::output::files::file_error;
@@ -10,30 +10,23 @@ use std::path::Path;
 use super::disk;
 
 /// Most bytes of a line.
-pub const MAX_LINE: usize = 1 << 20;
+const MAX_LINE: usize = 1 << 20;
 
-/// The names of what is in a folder, in their order.
-///
-/// # Errors
-/// [`Error`] when it cannot be read.
+/// The names of the entries of a folder, in their order.
 pub fn names_in(folder: &Path) -> Result<Vec<String>, Error> {
     let entries = disk::entries(folder).map_err(|source| file_error::unwritable(folder, source))?;
     let names = entries.iter().filter_map(|(path, _)| path.file_name());
-    Ok(names
-        .map(|name| name.to_string_lossy().into_owned())
-        .collect())
+    let names = names.map(|name| name.to_string_lossy().into_owned());
+    Ok(names.collect())
 }
 
-/// Makes a folder and those above it, where they are not there.
-///
-/// # Errors
-/// [`Error`] when it cannot be made.
+/// Makes a folder and those above it that are missing.
 pub fn make_folder(path: &Path) -> Result<(), Error> {
     let made = disk::create_dir_all(path).map(drop);
     made.map_err(|source| file_error::unwritable(path, source))
 }
 
-/// Removes files of a folder, and the folder if nothing is left in it. What cannot be removed stays.
+/// Removes files of a folder, and the folder if it is empty then. Failures have no effect.
 pub fn clear(folder: &Path, names: &[&str]) {
     for name in names {
         let _ = disk::remove_file(&folder.join(name));
@@ -44,7 +37,7 @@ pub fn clear(folder: &Path, names: &[&str]) {
 /// Opens a file to be read.
 ///
 /// # Errors
-/// [`Error`] where it is no file, such as a link or a pipe, and where it cannot be read.
+/// [`Error`] for a file that cannot be read, and for a name of no file, such as of a link or a pipe.
 pub fn open_own(path: &Path) -> Result<File, Error> {
     disk::open(path, File::options().read(true)).map_err(|source| match source.kind() {
         io::ErrorKind::PermissionDenied => file_error::reading(path, source),
@@ -66,33 +59,24 @@ pub fn read_own(path: &Path, limit: u64) -> Result<Vec<u8>, Error> {
     read.map_err(|source| file_error::reading(path, source))?;
     if bytes.len() as u64 > limit {
         let message = format!("{} has more than {limit} bytes", path.display());
-        return Err(file_error::refused(
-            path,
-            message,
-            "move it away, or choose another directory",
-        ));
+        let remedy = "move it away, or choose another directory";
+        return Err(file_error::refused(path, message, remedy));
     }
     Ok(bytes)
 }
 
-/// Reads the next line without its end; false where there is none that is whole.
+/// Reads the next line without its end; false if no whole line is left.
 ///
 /// # Errors
-/// What the system says, and [`io::ErrorKind::FileTooLarge`] for a line of more than a megabyte.
+/// Those of the file, and [`io::ErrorKind::FileTooLarge`] for a line of more than a megabyte.
 pub fn next_line(file: &mut impl BufRead, line: &mut Vec<u8>) -> io::Result<bool> {
     line.clear();
-    let count = file
-        .by_ref()
-        .take(MAX_LINE as u64 + 1)
-        .read_until(b'\n', line)?;
-    if line.pop_if(|last| *last == b'\n').is_some() {
-        return Ok(true);
+    let mut bounded = file.by_ref().take(MAX_LINE as u64 + 1);
+    let count = bounded.read_until(b'\n', line)?;
+    let is_whole = line.pop_if(|last| *last == b'\n').is_some();
+    if !is_whole && count > MAX_LINE {
+        let message = "a line has more than a megabyte";
+        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
     }
-    match count > MAX_LINE {
-        true => Err(io::Error::new(
-            io::ErrorKind::FileTooLarge,
-            "a line has more than a megabyte",
-        )),
-        false => Ok(false),
-    }
+    Ok(is_whole)
 }

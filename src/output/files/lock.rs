@@ -1,4 +1,4 @@
-//! A lock: one command at a time writes to a place. The system lets go of it however the process ends.
+//! A lock: one command at a time writes to a place. The system releases it however the process ends.
 
 use crate::output::files::file_error;
 use knotdock_structures::Error;
@@ -10,8 +10,7 @@ use super::disk;
 
 /// A lock file that this process holds. Dropped, it goes.
 ///
-/// Where the file system knows no locks, having made the file is the lock. After a kill it has to be removed by hand
-/// there.
+/// On a file system without locks, the new file itself is the lock. After a kill it has to be removed by hand there.
 #[derive(Debug)]
 pub struct Lock {
     file: Option<File>,
@@ -22,7 +21,7 @@ impl Lock {
     /// Takes the lock of a path, at which there is no file or an empty one.
     ///
     /// # Errors
-    /// [`Error`] where another process holds it, where something else has the name, and where no file can be made.
+    /// [`Error`] if another process holds it, if something else has the name, and if no file can be made.
     pub fn take(path: &Path) -> Result<Self, Error> {
         // The process that holds the lock may remove the file at any moment.
         const ATTEMPTS: usize = 16;
@@ -81,16 +80,11 @@ fn in_the_way(path: &Path) -> Error {
 }
 
 fn held(path: &Path, may_be_left: bool) -> Error {
-    file_error::refused(
-        path,
-        "another command is writing there",
-        match may_be_left {
-            true => {
-                "wait for it to end; if none runs, one that was ended left this file: remove it"
-            }
-            false => "wait for it to end, or choose another directory with -o",
-        },
-    )
+    let remedy = match may_be_left {
+        true => "wait for it to end; if none runs, one that was ended left this file: remove it",
+        false => "wait for it to end, or choose another directory with -o",
+    };
+    file_error::refused(path, "another command is writing there", remedy)
 }
 
 /// Whether an open file is the one at a path.

@@ -11,7 +11,6 @@ pub mod file_error;
 pub mod folder;
 pub mod lock;
 pub mod model_file;
-pub mod molecule_file;
 pub mod own_files;
 pub mod seal;
 pub mod staging;

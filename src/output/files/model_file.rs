@@ -1,4 +1,4 @@
-//! Many complexes in one file, `ensemble.pdb` or `ensemble.cif`: one model a rank, for viewers that play them.
+//! Many complexes in one file, `ensemble.pdb` or `ensemble.cif`: one model per rank, for viewers that play them.
 
 use crate::output::files::file_error;
 use knotdock_structures::Error;
@@ -6,19 +6,19 @@ use std::path::Path;
 
 use knotdock_structures::molecule::{Format, ModelWriter, Molecule, complex_format};
 
-use crate::output::files::complexes::placed_copies;
+use crate::output::files::complexes::{placed_copies, with};
 use crate::output::files::disk;
 use crate::output::files::whole_file::write_new;
 use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
 
-/// A pose, and what is placed by it.
+/// A pose with its molecules.
 #[derive(Clone, Copy)]
 pub struct PosedPair<'a> {
     /// Receptor and ligand.
     pub molecules: [&'a Molecule; 2],
-    /// What they are put together to.
+    /// Their arrangement.
     pub arrangement: Arrangement,
     /// The pose.
     pub row: PoseRow,
@@ -29,7 +29,7 @@ pub fn model_file_name(format: Format) -> String {
     format!("ensemble.{}", format.extension())
 }
 
-/// Writes complexes into a staging folder as the models of one file, in the order given; as mmCIF where one of the
+/// Writes complexes into a staging folder as the models of one file, in the order given; as mmCIF if one of the
 /// inputs was mmCIF or a complex does not fit the PDB format. Returns the file's name.
 ///
 /// # Errors
@@ -40,9 +40,7 @@ pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Er
     // Placed molecules are made twice: all at once may not fit into the memory.
     let mut format = Format::Pdb;
     for pair in pairs {
-        let others = complex(pair)?;
-        let all: Vec<&Molecule> = [pair.molecules[0]].into_iter().chain(&others).collect();
-        if complex_format(&all) != Format::Pdb {
+        if complex_format(&with(pair.molecules[0], &complex(pair)?)) != Format::Pdb {
             format = Format::Mmcif;
             break;
         }
@@ -50,21 +48,16 @@ pub fn write_model_file(pairs: &[PosedPair], folder: &Path) -> Result<String, Er
     let name = model_file_name(format);
     let path = folder.join(&name);
     disk::create_dir_all(folder).map_err(|source| file_error::unwritable(folder, source))?;
+    let mut remarks = vec![format!("knotdock {VERSION}")];
     let numbered = pairs.iter().zip(1..);
-    let lines = numbered.map(|(pair, model)| format!("model {model} is rank {}", pair.row.rank));
-    let remarks: Vec<String> = [format!("knotdock {VERSION}")]
-        .into_iter()
-        .chain(lines)
-        .collect();
+    remarks.extend(numbered.map(|(pair, at)| format!("model {at} is rank {}", pair.row.rank)));
     let mut failed = None;
     let written = write_new(&path, |mut file| {
         let mut models = ModelWriter::new(&mut file, format, remarks);
         for pair in pairs {
             match complex(pair) {
                 Ok(others) => {
-                    let all: Vec<&Molecule> =
-                        [pair.molecules[0]].into_iter().chain(&others).collect();
-                    models.write(&all)?;
+                    models.write(&with(pair.molecules[0], &others))?;
                 }
                 Err(error) => {
                     failed = Some(error);

@@ -1,4 +1,4 @@
-//! The files that runs wrote, by their records: anything else in a run's directory is the user's.
+//! The files that runs wrote, by their records: all other files in a run's directory are the user's.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::ffi::OsStr;
@@ -18,13 +18,13 @@ pub const RUN: &str = "run.json";
 pub const ENSEMBLE: &str = "ensemble.json";
 /// The record of `knotdock tradeoff`.
 pub const TRADEOFF: &str = "tradeoff.json";
-/// The list of what was added to a run, with checksums as `files`.
+/// The list of a run's additions, with checksums as `files`.
 pub const ADDED: &str = "added.json";
 
 /// Folder of an ensemble that holds its runs.
 pub const MEMBERS: &str = "members";
 
-/// Those of a directory's files that no run in it wrote as they are.
+/// The files of a directory that no run in it wrote as they are.
 pub(super) fn not_own(place: &Path, files: &[PathBuf]) -> io::Result<Vec<PathBuf>> {
     let mut own = OwnFiles::default();
     for path in files.iter().filter(|path| is_record(path)) {
@@ -56,7 +56,7 @@ pub(super) struct OwnFiles {
     checksums: BTreeMap<PathBuf, Vec<String>>,
     /// Records, which list no checksum of themselves.
     records: BTreeSet<PathBuf>,
-    /// Reports, which say by themselves that they are as they were written.
+    /// Reports, whose seals show that they are as they were written.
     reports: BTreeSet<PathBuf>,
 }
 
@@ -88,10 +88,10 @@ impl OwnFiles {
         if self.records.contains(path) || (self.reports.contains(path) && is_sealed(&file)) {
             return Ok(true);
         }
-        let Some(sums) = self.checksums.get(path) else {
-            return Ok(false);
-        };
-        Ok(sums.contains(&sha256_of_file(&file)?))
+        match self.checksums.get(path) {
+            Some(sums) => Ok(sums.contains(&sha256_of_file(&file)?)),
+            None => Ok(false),
+        }
     }
 }
 
@@ -108,9 +108,8 @@ pub(super) fn is_of_us(path: &Path) -> bool {
 }
 
 fn read_record(path: &Path) -> io::Result<Value> {
-    Ok(serde_json::from_slice(&read_bounded_file(
-        path, MAX_RECORD,
-    )?)?)
+    let bytes = read_bounded_file(path, MAX_RECORD)?;
+    Ok(serde_json::from_slice(&bytes)?)
 }
 
 /// A path from a folder, with `/` between its parts.

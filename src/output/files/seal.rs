@@ -1,16 +1,16 @@
 //! The seal of a report: its last line, by which it is known to be as it was written.
 //!
-//! A report says how long its run took, so it differs from run to run, and run.json does not list its checksum. Its own
-//! last line does.
+//! A report shows the time of its run, so it differs from run to run, and run.json does not list its checksum. The last
+//! line of the report does.
 
 use std::fs;
 use std::path::Path;
 
 use super::checksum::sha256;
 
-/// Name of a report in the directory of what it is of.
+/// Name of the report in the directory of a run.
 pub const REPORT: &str = "report.html";
-/// What a report begins with.
+/// Beginning of a report.
 pub const BEGINNING: &str = "<!DOCTYPE html>\n<!-- A report of knotdock";
 
 const SEAL: &str = "<!-- sha256 of all above: ";

@@ -1,9 +1,9 @@
 //! A run's directory: all of a new run or all of the older one.
 //!
-//! The directory is this program's own: it was not there or was empty, or it holds an earlier run and nothing else. A
-//! run is written in a folder beside it, `.NAME.knotdock-` and random letters, and takes its place by one rename when
-//! all of it is on the device. An older run is exchanged for it at one stroke. Where the system cannot exchange, the
-//! older one goes aside to `.NAME.knotdock-old` first, and the next command puts it back if nothing came after.
+//! The directory is this program's: it is new or empty, or it holds an earlier run and nothing else. A run is written in a
+//! folder beside it, `.NAME.knotdock-` and random letters, and takes its place by one rename when all of it is on the
+//! device. An older run is exchanged for it at one stroke. If the system cannot exchange, the older one goes aside to
+//! `.NAME.knotdock-old` first, and the next command puts it back if no new one came.
 
 use crate::output::files::file_error;
 use knotdock_structures::Error;
@@ -21,7 +21,7 @@ use super::whole_file::{beside, is_link, leftovers, lock_beside, make_beside, pa
 #[derive(Debug)]
 pub struct Stage {
     folder: PathBuf,
-    /// Where its files will be, for messages.
+    /// The final folder of its files, for messages.
     shown: PathBuf,
     /// Whether it stays.
     is_kept: bool,
@@ -32,10 +32,11 @@ impl Stage {
     pub(super) fn beside(place: &Path, shown: &Path) -> Result<Self, Error> {
         let made = make_beside(place, disk::create_dir);
         let (_, path) = made.map_err(|source| file_error::unwritable(shown, source))?;
+        let folder = path
+            .keep()
+            .map_err(|error| file_error::unwritable(shown, error))?;
         Ok(Self {
-            folder: path
-                .keep()
-                .map_err(|error| file_error::unwritable(shown, error))?,
+            folder,
             shown: shown.to_owned(),
             is_kept: false,
         })
@@ -49,7 +50,7 @@ impl Stage {
     /// Writes a file.
     ///
     /// # Errors
-    /// [`Error`] when it cannot be written, under the name that it would have had.
+    /// [`Error`] for a file that cannot be written, with its final name.
     pub fn write(
         &self,
         name: &str,
@@ -60,10 +61,7 @@ impl Stage {
     }
 
     /// SHA-256 of each file written so far, by its path from the folder with `/` between folders. The record holds them
-    /// as `files`. A folder of runs has records of its own, and is left out.
-    ///
-    /// # Errors
-    /// [`Error`] when one cannot be read.
+    /// as `files`. A folder of runs has its own records, and is left out.
     pub fn checksums(&self) -> Result<BTreeMap<String, String>, Error> {
         let failed = |source| file_error::writing(&self.shown, source);
         let mut checksums = BTreeMap::new();
@@ -80,18 +78,18 @@ impl Stage {
 
 impl Drop for Stage {
     fn drop(&mut self) {
-        // A failure to tidy up has nobody to report to; what stays is reported by the next command.
+        // The next command reports a folder that stays.
         if !self.is_kept {
             let _ = disk::remove_tree(&self.folder);
         }
     }
 }
 
-/// Folders that were made for something. Dropped, those that are empty go.
+/// Folders that a command made. Dropped, those that are empty go.
 #[derive(Debug, Default)]
-pub(super) struct Made(pub Vec<PathBuf>);
+pub(super) struct NewFolders(pub Vec<PathBuf>);
 
-impl Drop for Made {
+impl Drop for NewFolders {
     fn drop(&mut self) {
         for folder in self.0.iter().rev() {
             let _ = disk::remove_dir(folder);
@@ -109,18 +107,18 @@ pub struct Staging {
     /// Without links.
     place: PathBuf,
     stage: Stage,
-    /// What commands that were ended left beside the directory.
+    /// Leftovers of ended commands beside the directory.
     pub leftovers: Vec<PathBuf>,
     _lock: Lock,
-    _made: Made,
+    _made: NewFolders,
 }
 
 impl Staging {
     /// Makes a staging folder for a run with a record, such as `run.json`, which also shows that it can be written.
     ///
     /// # Errors
-    /// [`Error`] when the directory holds a run and `force` is false, when it holds anything else, when another
-    /// command writes to it, and when nothing can be written there.
+    /// [`Error`] if the directory holds a run and `force` is false, if it holds anything else, if another command writes to
+    /// it, and if nothing can be written there.
     pub fn open(record: &'static str, directory: &Path, force: bool) -> Result<Self, Error> {
         let (place, made, lock) = locked(directory)?;
         if place.is_dir() && (holds_current(&place) || !is_one_device(&place, parent(&place))) {
@@ -138,16 +136,16 @@ impl Staging {
         })
     }
 
-    /// What is written to.
+    /// The folder to write to.
     pub fn stage(&self) -> &Stage {
         &self.stage
     }
 
-    /// Moves what was written into the run's directory, in place of an older run, once it is on the device.
+    /// Moves the files into the run's directory, in place of an older run, once they are on the device.
     ///
     /// # Errors
-    /// [`Error`]. An older run stands then, in its place or aside; where something came to it that is not its own,
-    /// the new run stays beside it.
+    /// [`Error`]. An older run is then in its place or aside; if it has got files that are not its own, the new run stays
+    /// beside it.
     pub fn commit(mut self) -> Result<(), Error> {
         let (new, place) = (self.stage.folder.clone(), self.place.as_path());
         let failed = |source| file_error::writing(&self.directory, source);
@@ -156,11 +154,10 @@ impl Staging {
             disk::set_permissions(&new, there.permissions()).map_err(failed)?;
         }
         disk::sync_tree(&new).map_err(failed)?;
-        let older = refuse(self.record, &self.directory, place, true).inspect_err(|_| {
+        let older = refuse(self.record, &self.directory, place, true).map_err(|error| {
             self.stage.is_kept = true;
-        });
-        let older =
-            older.map_err(|error| error.and(format!("the new run is in {}", new.display())))?;
+            error.and(format!("the new run is in {}", new.display()))
+        })?;
         let Some(older) = older else {
             // An empty directory goes first; one that is not empty any more does not.
             if place.is_dir() {
@@ -170,9 +167,9 @@ impl Staging {
             return disk::sync(parent(place)).map_err(failed);
         };
         let aside = replace(&new, place).map_err(failed)?;
-        // What has come to the older run since is the user's.
+        // Files that the older run has got since are the user's.
         self.stage.is_kept = true;
-        // It goes only when the new one is on the device. What cannot go is reported by the next command.
+        // It goes only when the new one is on the device. The next command reports remains.
         if disk::sync(parent(place)).is_ok() {
             remove(&aside, older);
         }
@@ -180,7 +177,7 @@ impl Staging {
     }
 }
 
-/// Puts a new folder in the place of an older one; where that is now.
+/// Puts a new folder in the place of an older one; returns the new place of that.
 fn replace(new: &Path, place: &Path) -> io::Result<PathBuf> {
     match disk::exchange(new, place) {
         Ok(()) => return Ok(new.to_owned()),
@@ -192,15 +189,14 @@ fn replace(new: &Path, place: &Path) -> io::Result<PathBuf> {
         |source: io::Error| io::Error::new(source.kind(), format!("{}: {source}", aside.display()));
     disk::rename_new(place, &aside).map_err(taken)?;
     if let Err(error) = disk::rename_new(new, place) {
-        // Where this fails, too, the next command does it.
+        // If this fails, too, the next command does it.
         let _ = disk::rename_new(&aside, place);
         return Err(error);
     }
     Ok(aside)
 }
 
-/// Removes files from a folder, and the folders that are empty then. Records go last: by them it is known whose the
-/// others are.
+/// Removes files from a folder, and the folders that are empty then. Records go last: they list the others.
 fn remove(folder: &Path, mut files: Vec<PathBuf>) {
     let mut folders: BTreeSet<&Path> = BTreeSet::new();
     files.sort_by_key(|path| (is_record(path), path.components().count() == 1));
@@ -219,16 +215,16 @@ fn remove(folder: &Path, mut files: Vec<PathBuf>) {
     }
 }
 
-/// Where an older run is between two renames.
+/// Place of an older run between two renames.
 fn aside(place: &Path) -> PathBuf {
     beside(place, "old")
 }
 
 /// A run's directory without links, the folders made above it, and its lock. An older run that a kill left aside is put
-/// back, or goes where a new one has come.
-pub(super) fn locked(directory: &Path) -> Result<(PathBuf, Made, Lock), Error> {
+/// back, or goes if a new one has come.
+pub(super) fn locked(directory: &Path) -> Result<(PathBuf, NewFolders, Lock), Error> {
     let unwritable = |source: io::Error| file_error::unwritable(directory, source);
-    // Without `/` at the end, behind which a link would be followed.
+    // Without `/` at the end, which would follow a link.
     let plain: PathBuf = directory.components().collect();
     if is_link(&plain) {
         return Err(file_error::link(directory));
@@ -244,15 +240,18 @@ pub(super) fn locked(directory: &Path) -> Result<(PathBuf, Made, Lock), Error> {
             }
         }
     };
-    let made = Made(disk::create_dir_all(&above).map_err(unwritable)?);
+    let made = NewFolders(disk::create_dir_all(&above).map_err(unwritable)?);
     let place = above.canonicalize().map_err(unwritable)?.join(name);
     let lock = Lock::take(&lock_beside(&place))?;
     let aside = aside(&place);
     let is_there = place.symlink_metadata().is_ok();
-    if !is_there && !is_link(&aside) && is_run(&aside) {
+    if is_link(&aside) {
+        return Ok((place, made, lock));
+    }
+    if !is_there && is_run(&aside) {
         disk::rename_new(&aside, &place).map_err(unwritable)?;
-    } else if is_there && !is_link(&aside) && aside.is_dir() {
-        // The new run stands. What is the older one's own goes, with folders in which nothing is left.
+    } else if is_there && aside.is_dir() {
+        // The new run is in place. The older one's own files go, with folders that are empty then.
         let files = disk::tree(&aside).map_err(unwritable)?;
         let others = not_own(&aside, &files).map_err(unwritable)?;
         let is_own = |path: &PathBuf| !others.contains(path) || aside.join(path).is_dir();
@@ -262,13 +261,10 @@ pub(super) fn locked(directory: &Path) -> Result<(PathBuf, Made, Lock), Error> {
 }
 
 /// Puts an older run back that a kill left aside, so that its directory can be read.
-///
-/// # Errors
-/// [`Error`] when it cannot be put back.
 pub fn put_back(directory: &Path) -> Result<(), Error> {
     let lock = lock_beside(directory);
     if lock.symlink_metadata().is_ok() {
-        // One that a kill left goes; one that is held stays, and so does whatever else has the name.
+        // A lock that a kill left goes; one that is held stays, as any other file of the name.
         drop(Lock::take(&lock));
     }
     let is_aside = directory.symlink_metadata().is_err() && aside(directory).is_dir();
@@ -289,7 +285,7 @@ fn holds_current(place: &Path) -> bool {
     current.is_ok_and(|current| current.starts_with(place))
 }
 
-/// Refuses a directory that is not a run's, and one of a run unless `force` is true; the files of a run that is there.
+/// Refuses a directory that is not a run's, and one of a run unless `force` is true; returns the files of the run.
 fn refuse(
     record: &str,
     directory: &Path,
@@ -297,10 +293,7 @@ fn refuse(
     force: bool,
 ) -> Result<Option<Vec<PathBuf>>, Error> {
     let unreadable = |source: io::Error| file_error::unwritable(directory, source);
-    if place.symlink_metadata().is_err() {
-        return Ok(None);
-    }
-    if disk::entries(place).map_err(unreadable)?.is_empty() {
+    if place.symlink_metadata().is_err() || disk::entries(place).map_err(unreadable)?.is_empty() {
         return Ok(None);
     }
     let refused =
@@ -323,15 +316,13 @@ fn refuse(
         return Ok(Some(files));
     }
     let shown: Vec<String> = others.iter().take(3).map(|path| name_of(path)).collect();
-    let more = if others.len() > shown.len() {
-        " ..."
-    } else {
-        ""
-    };
+    let (names, more) = (
+        shown.join(", "),
+        ["", " ..."][usize::from(others.len() > shown.len())],
+    );
     refused(
         format!(
-            "the directory holds files that are not the run's own, or were edited: {}{more}",
-            shown.join(", ")
+            "the directory holds files that are not the run's own, or were edited: {names}{more}"
         ),
         "move them away, or choose another directory with -o",
     )
@@ -397,7 +388,7 @@ mod tests {
         );
     }
 
-    /// A run takes the place of nothing but a run, on request, and of no file of the user's in it.
+    /// A run replaces only a run, on request, and no user's file in it.
     #[test]
     fn what_is_not_a_runs_own_is_refused() {
         let root = tempfile::tempdir().unwrap();

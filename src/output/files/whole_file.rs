@@ -14,7 +14,7 @@ use super::checksum::sha256_of_file;
 use super::disk;
 use super::fault::point;
 
-/// Whether a name stands for something that is written to in place, such as a device or a pipe.
+/// Whether a name is of a device, a pipe or the like, which is written to in place.
 ///
 /// A name that the system gives to the process counts too. It may be a regular file (`/dev/stdout`, redirected).
 pub fn is_stream(path: &Path) -> bool {
@@ -23,27 +23,21 @@ pub fn is_stream(path: &Path) -> bool {
 
 /// Whether the system gives a name to the process, as it does `/dev/stdout`.
 fn is_of_process(path: &Path) -> bool {
+    let names = ["/dev/stdin", "/dev/stdout", "/dev/stderr"];
     path.starts_with("/proc")
         || path.starts_with("/dev/fd")
-        || ["/dev/stdin", "/dev/stdout", "/dev/stderr"]
-            .iter()
-            .any(|name| path == Path::new(name))
+        || names.iter().any(|name| path == Path::new(name))
 }
 
 /// Whether a name is a link that the user made: nothing is written through it.
 pub fn is_link(path: &Path) -> bool {
-    !is_of_process(path)
-        && path
-            .symlink_metadata()
-            .is_ok_and(|found| found.is_symlink())
+    !is_of_process(path) && path.is_symlink()
 }
 
-/// Random letters at the end of the name of what is being written.
+/// Random letters at the end of the name of a file or folder that is being written.
 const RANDOM: usize = 12;
-/// What the command that holds a place calls its lock.
-const LOCK: &str = "lock";
 
-/// A name beside a place for something of this program: `.NAME.knotdock-` and an ending.
+/// A name of this program beside a place: `.NAME.knotdock-` and an ending.
 pub(super) fn beside(place: &Path, ending: &str) -> PathBuf {
     let mut name = prefix(place);
     name.push(ending);
@@ -52,7 +46,7 @@ pub(super) fn beside(place: &Path, ending: &str) -> PathBuf {
 
 /// The lock of a place.
 pub(super) fn lock_beside(place: &Path) -> PathBuf {
-    beside(place, LOCK)
+    beside(place, "lock")
 }
 
 fn prefix(place: &Path) -> OsString {
@@ -71,7 +65,7 @@ fn prefix(place: &Path) -> OsString {
     prefix
 }
 
-/// Makes something beside a place, under a name that nothing had.
+/// Makes a file or a folder beside a place, under a new name.
 pub(super) fn make_beside<R>(
     place: &Path,
     make: impl FnMut(&Path) -> io::Result<R>,
@@ -83,7 +77,7 @@ pub(super) fn make_beside<R>(
     Ok(made.into_parts())
 }
 
-/// What commands that were ended, or still run, have beside a place. Nobody but the user can tell whether it may go.
+/// Files and folders of commands that were ended, or still run, beside a place. Only the user can decide whether they go.
 pub fn leftovers(place: &Path) -> Vec<PathBuf> {
     let (lock, prefix) = (lock_beside(place), prefix(place));
     let entries = disk::entries(parent(place)).unwrap_or_default().into_iter();
@@ -95,22 +89,19 @@ pub fn leftovers(place: &Path) -> Vec<PathBuf> {
     entries.map(|(path, _)| path).filter(is_ours).collect()
 }
 
-/// A file that is written and not yet in its place. Dropped, it goes, and what is in its place stays.
+/// A file that is written and not yet in its place. Dropped, it goes, and the file in its place stays.
 #[derive(Debug)]
 pub struct StagedFile {
     place: PathBuf,
-    /// Whether a file was there when this one was begun. One that comes in the meantime is not replaced.
+    /// Whether a file was there at the start. One that comes in the meantime is not replaced.
     replaces: bool,
-    /// Where it is; `None` for a stream, which is written to in place.
+    /// Its present path; `None` for a stream, which is written to in place.
     file: Option<TempPath>,
 }
 
 impl StagedFile {
-    /// Writes a file, to the device, beside its place. What is not a regular file (`/dev/stdout`, a pipe) is written to
-    /// as it stands. A file that is replaced leaves its mode.
-    ///
-    /// # Errors
-    /// [`Error`] when the place is a link, when the file cannot be made, and when writing to it fails.
+    /// Writes a file, to the device, beside its place. A stream (`/dev/stdout`, a pipe) is written to in place. A file that
+    /// is replaced leaves its mode.
     pub fn write(
         path: &Path,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -129,10 +120,7 @@ impl StagedFile {
         Self::own(path, fill)
     }
 
-    /// As [`StagedFile::write`], under a name that no user chose: what is no regular file there is refused.
-    ///
-    /// # Errors
-    /// As [`StagedFile::write`].
+    /// As [`StagedFile::write`], under a name that no user chose: any but a regular file there is refused.
     pub fn own(
         path: &Path,
         fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -140,11 +128,8 @@ impl StagedFile {
         let there = path.symlink_metadata().ok();
         if there.as_ref().is_some_and(|found| !found.is_file()) {
             let message = format!("{} is there and is no regular file", path.display());
-            return Err(file_error::refused(
-                path,
-                message,
-                "move it away, or choose another place",
-            ));
+            let remedy = "move it away, or choose another place";
+            return Err(file_error::refused(path, message, remedy));
         }
         let replaces = there.is_some();
         let (file, temporary) = make_beside(path, disk::create)
@@ -167,9 +152,6 @@ impl StagedFile {
     }
 
     /// Whether a file with the same content is in its place already.
-    ///
-    /// # Errors
-    /// [`Error`] where one of them cannot be read.
     pub fn is_there(&self) -> Result<bool, Error> {
         let (Some(file), true) = (&self.file, self.replaces) else {
             return Ok(false);
@@ -180,31 +162,24 @@ impl StagedFile {
     }
 
     /// Puts the file into its place, at one stroke.
-    ///
-    /// # Errors
-    /// [`Error`].
     pub fn place(self) -> Result<(), Error> {
         let Some(file) = self.file else {
             return Ok(());
         };
-        let moved = match self.replaces {
-            true => disk::rename(&file, &self.place),
-            false => disk::rename_new(&file, &self.place),
+        let rename = match self.replaces {
+            true => disk::rename,
+            false => disk::rename_new,
         };
-        moved
-            .and_then(|()| {
-                // It has another name now, and nothing is left to be removed.
-                let _ = file.keep();
-                disk::sync(parent(&self.place))
-            })
-            .map_err(|source| file_error::writing(&self.place, source))
+        let moved = rename(&file, &self.place).and_then(|()| {
+            // It has another name now, and nothing is left to be removed.
+            let _ = file.keep();
+            disk::sync(parent(&self.place))
+        });
+        moved.map_err(|source| file_error::writing(&self.place, source))
     }
 }
 
 /// Writes a single file whole: beside `path`, then moved there at one stroke.
-///
-/// # Errors
-/// As [`StagedFile::write`].
 pub fn write_whole(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
@@ -228,14 +203,11 @@ fn write_in_place(
     path: &Path,
     fill: impl FnOnce(&mut dyn Write) -> io::Result<()>,
 ) -> Result<(), Error> {
-    let file = File::options()
-        .append(true)
-        .open(path)
-        .map_err(|source| file_error::unwritable(path, source))?;
+    let file = File::options().append(true).open(path);
+    let file = file.map_err(|source| file_error::unwritable(path, source))?;
     let mut buffer = BufWriter::new(file);
-    fill(&mut buffer)
-        .and_then(|()| buffer.flush())
-        .map_err(|source| file_error::writing(path, source))
+    let written = fill(&mut buffer).and_then(|()| buffer.flush());
+    written.map_err(|source| file_error::writing(path, source))
 }
 
 /// The folder of a file.
@@ -247,9 +219,6 @@ pub(super) fn parent(path: &Path) -> &Path {
 }
 
 /// Writes a value as indented JSON with a line end.
-///
-/// # Errors
-/// Those of the stream.
 pub fn to_json(stream: &mut dyn Write, value: &impl Serialize) -> io::Result<()> {
     serde_json::to_writer_pretty(&mut *stream, value)?;
     writeln!(stream)

@@ -1,29 +1,26 @@
-//! Input files as a run records them: where they are and how to know them again.
+//! Input files as a run records them: their paths and checksums.
 
 use knotdock_structures::Error;
-use std::fs;
-use std::io;
 use std::path::{Path, PathBuf};
 
 use knotdock_structures::molecule::{Format, InputSpec, Molecule, file_bytes, write_molecule};
 use serde::{Deserialize, Serialize};
 
-use crate::memory_size::in_words;
 use crate::output::files::checksum::{sha256, sha256_of_file};
 use crate::output::files::whole_file::is_stream;
 use crate::plain_path::plain_path;
 
-/// An input file as recorded: what to read and how to know it again.
+/// An input file as recorded.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct InputRecord {
     /// Absolute path.
     pub path: PathBuf,
     /// Names of the chains that were picked; `null` for all.
     pub chains: Option<Vec<String>>,
-    /// The model that was picked, by its place in the file; not there where the options of reading chose it.
+    /// The model that was picked, by its place in the file; absent if the options of reading chose it.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub model: Option<usize>,
-    /// SHA-256 of the file as it lies on the disk, in hexadecimal.
+    /// SHA-256 of the file on the disk, in hexadecimal.
     pub sha256: String,
 }
 
@@ -42,9 +39,6 @@ impl InputRecord {
     }
 
     /// The record of a molecule: of its file, or of one made in memory with the checksum of its atoms in mmCIF.
-    ///
-    /// # Errors
-    /// [`Error`] if the file cannot be read again.
     pub fn of_molecule(molecule: &Molecule) -> Result<Self, Error> {
         if let Some(spec) = &molecule.report.source {
             return Ok(Self::new(spec, &file_bytes(&spec.path)?));
@@ -64,7 +58,7 @@ impl InputRecord {
         (&self.sha256, &self.chains, self.model) == (&other.sha256, &other.chains, other.model)
     }
 
-    /// What to read.
+    /// The input to read.
     pub fn spec(&self) -> InputSpec {
         InputSpec {
             path: self.path.clone(),
@@ -73,26 +67,22 @@ impl InputRecord {
         }
     }
 
-    /// The same record with the path at which the file is found: where it was, or under its name in one of `folders`,
-    /// for runs that were moved or copied together with their inputs.
+    /// The record with the path at which the file is found: the recorded one, or under its name in one of `folders`, for
+    /// runs that were moved or copied together with their inputs.
     ///
     /// # Errors
-    /// [`Error`] of the recorded path when no file with the recorded checksum is there or in the folders.
+    /// [`Error`] of the recorded path if no file with the recorded checksum is there or in the folders.
     pub fn locate(&self, folders: &[PathBuf]) -> Result<Self, Error> {
-        let first = match self.verify(&self.path) {
-            Ok(()) => return Ok(self.clone()),
-            Err(error) => error,
+        let Err(error) = self.verify(&self.path) else {
+            return Ok(self.clone());
         };
         let name = self.path.file_name().unwrap_or_default();
-        folders
-            .iter()
-            .map(|folder| folder.join(name))
-            .find(|path| self.verify(path).is_ok())
-            .map(|path| Self {
-                path,
-                ..self.clone()
-            })
-            .ok_or(first)
+        let mut others = folders.iter().map(|folder| folder.join(name));
+        let path = others.find(|path| self.verify(path).is_ok()).ok_or(error)?;
+        Ok(Self {
+            path,
+            ..self.clone()
+        })
     }
 
     /// Checks that a file is the one recorded.
@@ -109,7 +99,7 @@ impl InputRecord {
                 "dock again from a file, or put what was read under that name beside the directory of the run",
             );
         }
-        let sum = sha256_of(path).map_err(|error| {
+        let sum = sha256_of_file(path).map_err(|error| {
             Error::input(format!("cannot read {}: {error}", path.display()))
                 .at(path)
                 .help("put the file where the run found it, or beside the directory of the run")
@@ -125,19 +115,6 @@ impl InputRecord {
         }
         Ok(())
     }
-}
-
-/// Most bytes of an input: no reader of structures or meshes takes more.
-const MAX_INPUT: u64 = 4 << 30;
-
-/// SHA-256 of a file, in hexadecimal.
-fn sha256_of(path: &Path) -> io::Result<String> {
-    if fs::metadata(path)?.len() > MAX_INPUT {
-        let most = in_words(MAX_INPUT);
-        let message = format!("it has more than {most}, the most that are read of an input");
-        return Err(io::Error::new(io::ErrorKind::FileTooLarge, message));
-    }
-    sha256_of_file(path)
 }
 
 /// The native complex that the poses were measured against.

@@ -4,19 +4,16 @@
 //! byte, for the same input, options and CPU feature level.
 
 use std::collections::BTreeMap;
-use std::io;
 
 use knotdock_structures::Error;
 use knotdock_structures::molecule::{ChainMap, Molecule};
 use serde::Serialize;
 use serde_json::Value;
 
-use crate::dock::outcome::MeasuredError;
-use crate::dock::outcome::{DockOutcome, EffectCost, SharpOutcome, StageTime};
+use crate::dock::outcome::{EffectCost, MeasuredError, SharpOutcome, StageTime};
 use crate::dock::plan::DockPlan;
 use crate::mesh::SampledPart;
 use crate::options::DockOptions;
-use crate::output::files::whole_file::to_json;
 use crate::output::records::input_record::{InputRecord, NativeRecord};
 use crate::output::records::program::Program;
 use crate::priors::active_residues::AssumedSite;
@@ -28,7 +25,7 @@ use knotdock_scoring::terms::effect::Effect;
 /// Number of the layout of `run.json`; it rises when an entry changes its meaning or goes.
 pub const SCHEMA: u32 = 3;
 
-/// An input with what its reader made of it.
+/// An input and the report of its reader.
 #[derive(Clone, Debug, Serialize)]
 pub struct InputEntry {
     /// The file.
@@ -46,9 +43,6 @@ pub struct InputEntry {
 
 impl InputEntry {
     /// The entry of a molecule.
-    ///
-    /// # Errors
-    /// [`Error`] if the report cannot be put into JSON, which would be a fault of the program.
     pub fn of_molecule(record: InputRecord, molecule: &Molecule) -> Result<Self, Error> {
         let mut report = serde_json::to_value(&molecule.report).map_err(Error::machine)?;
         if let Some(report) = report.as_object_mut() {
@@ -90,27 +84,25 @@ pub struct Results {
 
 /// Cost of an effect.
 #[derive(Clone, Copy, Debug, Serialize)]
-pub struct EffectTime {
+pub(crate) struct EffectTime {
     /// The effect.
     pub effect: Effect,
     /// Its part of the milliseconds of a rotation; the parts of all effects add up to the whole.
     pub milliseconds_per_rotation: f64,
 }
 
-impl EffectTime {
-    /// The costs that a search measured.
-    pub fn of(costs: &[EffectCost]) -> Vec<Self> {
-        let times = costs.iter().map(|cost| Self {
+impl From<&EffectCost> for EffectTime {
+    fn from(cost: &EffectCost) -> Self {
+        Self {
             effect: cost.effect,
             milliseconds_per_rotation: cost.milliseconds_per_rotation,
-        });
-        times.collect()
+        }
     }
 }
 
 /// Cost of the run. Differs from run to run.
 #[derive(Clone, Debug, Serialize)]
-pub struct Timing {
+pub(crate) struct Timing {
     /// Start of the run, in seconds since 1970-01-01 UTC.
     pub started_unix_seconds: u64,
     /// Time on the clock from the first read to the last write, in seconds.
@@ -163,98 +155,37 @@ pub struct Machine {
 
 /// The errors that a run measured, as shares of the best score.
 #[derive(Clone, Copy, Debug, Serialize)]
-struct ErrorRecord {
+pub(crate) struct ErrorRecord {
     #[serde(flatten)]
-    measured: MeasuredError,
-    /// What compressing the lifted axis to its rank took, at the best poses of a few rotations.
-    lifted_axis: f64,
+    pub measured: MeasuredError,
+    /// Error of compressing the lifted axis to its rank, at the best poses of a few rotations.
+    pub lifted_axis: f64,
 }
 
 /// `run.json`.
 #[derive(Debug, Serialize)]
-pub struct Manifest<'a> {
-    schema: u32,
+pub(crate) struct Manifest<'a> {
+    pub schema: u32,
     #[serde(flatten)]
-    program: Program,
-    inputs: &'a Inputs,
-    options: &'a DockOptions,
-    plan: &'a DockPlan,
-    rank: usize,
-    effects: &'a [EffectCost],
-    pose_terms: Vec<ActingTerm>,
-    active_site: Option<&'a AssumedSite>,
-    sharp: Option<SharpOutcome>,
-    finer_search: Option<FineSearched>,
-    error: ErrorRecord,
-    results: Results,
-    files: BTreeMap<String, String>,
-    chains: Option<&'a ChainMap>,
-    #[serde(rename = "match")]
-    matching: Option<Value>,
-    timing: Timing,
-    machine: Machine,
-}
-
-/// Parts of a [`Manifest`].
-pub struct ManifestParts<'a> {
-    /// The input files.
+    pub program: Program,
     pub inputs: &'a Inputs,
-    /// What was requested.
     pub options: &'a DockOptions,
-    /// What was planned.
     pub plan: &'a DockPlan,
-    /// What came out.
-    pub outcome: &'a DockOutcome,
-    /// Counts of it.
+    pub rank: usize,
+    pub effects: &'a [EffectCost],
+    pub pose_terms: Vec<ActingTerm>,
+    pub active_site: Option<&'a AssumedSite>,
+    pub sharp: Option<SharpOutcome>,
+    pub finer_search: Option<FineSearched>,
+    pub error: ErrorRecord,
     pub results: Results,
     /// SHA-256 of each other file of the run, by its path from the directory.
     pub files: BTreeMap<String, String>,
     /// Chain names in the complexes; none of meshes.
     pub chains: Option<&'a ChainMap>,
     /// Report on the native's matching, or why it does not match, if there is one.
-    pub matching: Option<Value>,
-    /// What it cost.
+    #[serde(rename = "match")]
+    pub matching: Option<&'a Value>,
     pub timing: Timing,
-    /// Where it ran.
     pub machine: Machine,
-}
-
-impl<'a> Manifest<'a> {
-    /// The manifest of a finished run.
-    ///
-    /// # Errors
-    /// When a part cannot be put into JSON, which would be a fault of this program.
-    pub fn new(parts: ManifestParts<'a>) -> serde_json::Result<Self> {
-        Ok(Self {
-            schema: SCHEMA,
-            program: Program::this(),
-            inputs: parts.inputs,
-            options: parts.options,
-            plan: parts.plan,
-            rank: parts.outcome.rank,
-            effects: &parts.outcome.effects,
-            pose_terms: parts.plan.rescoring().acting(),
-            active_site: parts.plan.active_site(),
-            sharp: parts.outcome.sharp,
-            finer_search: parts.outcome.fine,
-            error: ErrorRecord {
-                measured: parts.outcome.error,
-                lifted_axis: parts.outcome.rank_error,
-            },
-            results: parts.results,
-            files: parts.files,
-            chains: parts.chains,
-            matching: parts.matching,
-            timing: parts.timing,
-            machine: parts.machine,
-        })
-    }
-
-    /// Writes the manifest to a stream.
-    ///
-    /// # Errors
-    /// Those of the stream.
-    pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
-        to_json(stream, self)
-    }
 }

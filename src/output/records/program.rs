@@ -37,7 +37,7 @@ impl Program {
     }
 }
 
-/// The instruction sets on which the transforms' code paths turn, which the last bits of a score can depend on.
+/// The instruction sets that select the transforms' code paths, which the last bits of a score can depend on.
 pub fn cpu_features() -> String {
     #[cfg(target_arch = "x86_64")]
     let found = [
@@ -48,9 +48,7 @@ pub fn cpu_features() -> String {
     ];
     #[cfg(not(target_arch = "x86_64"))]
     let found: [(&str, bool); 0] = [];
-    let names = found.iter().filter(|(_, on)| *on).map(|(name, _)| *name);
-    std::iter::once(std::env::consts::ARCH)
-        .chain(names)
-        .collect::<Vec<_>>()
-        .join(" ")
+    let mut names = vec![std::env::consts::ARCH];
+    names.extend(found.iter().filter(|(_, on)| *on).map(|(name, _)| *name));
+    names.join(" ")
 }

@@ -1,6 +1,6 @@
 //! Fields of tables.
 
-/// A column to append: its name and one field a row.
+/// A column to append: its name and one field per row.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Column {
     /// Name in the header.

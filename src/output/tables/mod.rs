@@ -1,7 +1,6 @@
 //! Tables: `poses.csv`, refined poses, the results of batches, tables of pairs and of atoms.
 
 pub mod fields;
-pub mod interface_shares;
 pub(super) mod pose_columns;
 pub mod poses;
 pub mod poses_reader;

@@ -1,14 +1,14 @@
 //! The columns of `poses.csv` that a search fills, in order.
 //!
-//! | columns | what |
+//! | columns | content |
 //! |---|---|
-//! | `score` | what orders the rows: the cluster's score where rows are clusters, else the pose's |
+//! | `score` | the score that orders the rows: the cluster's if rows are clusters, else the pose's |
 //! | `pose_score` | `search_score`, the pose terms and `other_copies` together |
 //! | `search_score` | exact correlation at the pose, which is the sum of the effects |
 //! | effects, pose terms | their weighted values by id; empty where one is off |
 //! | `sharp`, `sharp_energy`, `sharp_clashes` | the sharp fit; not with `--sharp off` |
 //!
-//! Columns for diagnosis come last: what the fast path gave, and from where.
+//! Columns for diagnosis come last: the values of the fast path, and the pose's origin.
 
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::{POSE_TERMS, TermDefinition};
@@ -46,14 +46,12 @@ fn optional(
 /// A column of counts that some poses lack.
 fn count(name: &'static str, value: impl Fn(&RankedPose) -> Option<usize> + 'static) -> PoseColumn {
     text(name, move |row| {
-        value(row)
-            .map(|value| value.to_string())
-            .unwrap_or_default()
+        value(row).map_or_else(String::new, |value| value.to_string())
     })
 }
 
-/// The columns after `rank`: with those of sharp fits where these were looked for, those for diagnosis where they are
-/// wanted, and those of the pose terms that are shown.
+/// The columns after `rank`: with those of sharp fits if these were made, those for diagnosis if requested, and those of the
+/// pose terms that are shown.
 pub(crate) fn columns(
     (sharp, diagnostics): (bool, bool),
     is_shown: impl Fn(&TermDefinition) -> bool,
@@ -65,15 +63,14 @@ pub(crate) fn columns(
         column("pose_score", |row| row.pose_score),
         column("search_score", |row| row.search_score),
     ];
-    columns.extend(
-        Effect::ALL.map(|effect| optional(effect.name(), move |row| row.terms[effect as usize])),
-    );
-    columns.extend(
-        POSE_TERMS
-            .iter()
-            .filter(|term| is_shown(term))
-            .map(|term| optional(term.id, |row| row.pose_terms.get(term.id))),
-    );
+    for effect in Effect::ALL {
+        columns.push(optional(effect.name(), move |row| {
+            row.terms[effect as usize]
+        }));
+    }
+    for term in POSE_TERMS.iter().filter(|term| is_shown(term)) {
+        columns.push(optional(term.id, |row| row.pose_terms.get(term.id)));
+    }
     columns.push(optional("other_copies", |row| row.other_copies));
     if sharp {
         columns.extend(of_sharp_fits());
@@ -91,7 +88,7 @@ pub(crate) fn columns(
     columns
 }
 
-/// Columns of the sharp fit: what it adds to the pose score, then the energy (RT) and clashes of the optimum.
+/// Columns of the sharp fit: its part of the pose score, then the energy (RT) and clashes of the optimum.
 fn of_sharp_fits() -> [PoseColumn; 3] {
     [
         optional("sharp", |row| row.sharp?.score),
@@ -100,7 +97,7 @@ fn of_sharp_fits() -> [PoseColumn; 3] {
     ]
 }
 
-/// Columns that say how the search came to a pose.
+/// Columns on the search's way to a pose.
 fn for_diagnosis() -> Vec<PoseColumn> {
     let mut columns = vec![
         optional("cluster_score", |row| row.cluster_score),

@@ -1,7 +1,6 @@
-//! `poses.csv`: one row a pose, best first (RFC 4180, but with LF as the line end).
+//! `poses.csv`: one row per pose, best first (RFC 4180, but with LF as the line end).
 //!
-//! Columns are found by name: those of `pose_columns`, and whatever is
-//! appended. Quaternions are Hamilton's, active, right-handed, unit, `qw >= 0`; a ligand atom at x in its own file
+//! Columns are found by name: those of `pose_columns`, and appended ones. Quaternions are Hamilton's, active, right-handed, unit, `qw >= 0`; a ligand atom at x in its own file
 //! goes to R(q) x + t, in Å, in the receptor's file frame. Numbers are in the shortest digits that read back to the
 //! same f64; a missing value is an empty field.
 
@@ -14,7 +13,7 @@ use serde_json::Value;
 use crate::output::tables::fields::Column;
 use crate::table_text::cells::TableWriter;
 
-/// A table of poses as text, with the pose of each row: what `evaluate` and `export` read.
+/// A table of poses as text, with the pose of each row, as `evaluate` and `export` read it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTable {
     /// The columns.
@@ -40,7 +39,7 @@ impl PoseTable {
         &self.rows
     }
 
-    /// The field of a row in a column, where the table has both.
+    /// The field of a row in a column, if the table has both.
     pub fn field(&self, row: usize, column: &str) -> Option<&str> {
         let place = self.header.iter().position(|name| name == column)?;
         self.records.get(row)?.get(place)
@@ -49,9 +48,8 @@ impl PoseTable {
     /// Rows as JSON objects with the columns' names: numbers, truth values and text, `null` for empty fields. Indices
     /// past the end are skipped.
     pub fn objects(&self, indices: impl IntoIterator<Item = usize>) -> Vec<Value> {
-        let records = indices
-            .into_iter()
-            .filter_map(|index| self.records.get(index));
+        let indices = indices.into_iter();
+        let records = indices.filter_map(|index| self.records.get(index));
         records
             .map(|record| row_object(&self.header, record))
             .collect()
@@ -70,20 +68,15 @@ impl PoseTable {
             match place {
                 None => record.push_field(field),
                 Some(place) => {
-                    *record = record
-                        .iter()
-                        .enumerate()
-                        .map(|(at, old)| if at == place { field } else { old })
-                        .collect();
+                    let fields = record.iter().enumerate();
+                    let fields = fields.map(|(at, old)| if at == place { field } else { old });
+                    *record = fields.collect();
                 }
             }
         }
     }
 
     /// Writes the table to a stream.
-    ///
-    /// # Errors
-    /// Those of the stream.
     pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
         let mut writer = TableWriter::new(stream);
         writer.row(&self.header)?;
@@ -97,10 +90,8 @@ impl PoseTable {
 /// A row as a JSON object with the columns' names.
 pub(crate) fn row_object(header: &StringRecord, record: &StringRecord) -> Value {
     let fields = header.iter().zip(record);
-    fields
-        .map(|(name, field)| (name.to_owned(), value(field)))
-        .collect::<serde_json::Map<_, _>>()
-        .into()
+    let entries = fields.map(|(name, field)| (name.to_owned(), value(field)));
+    Value::Object(entries.collect())
 }
 
 /// A field as JSON.

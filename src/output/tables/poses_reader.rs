@@ -29,9 +29,6 @@ pub(crate) fn no_value(path: &Path, line: u64, column: &str, field: &str, expect
 
 impl PoseTable {
     /// Reads a table, finding its columns by name; columns that are not needed are kept as they stand.
-    ///
-    /// # Errors
-    /// [`Error`], with file and line.
     pub fn read(path: &Path) -> Result<Self, Error> {
         let bytes = read_bounded(path, MAX_POSES).map_err(|error| {
             Error::input(format!("cannot read {}: {error}", path.display()))
@@ -79,9 +76,6 @@ impl PlacementColumns {
     };
 
     /// Finds the columns by their names.
-    ///
-    /// # Errors
-    /// [`Error`] for a column that is missing.
     pub fn find(path: &Path, header: &StringRecord) -> Result<Self, Error> {
         let mut found = Self::UNNAMED;
         for (column, place) in found.quaternion.iter_mut().chain(&mut found.translation) {
@@ -105,25 +99,19 @@ impl PlacementColumns {
             let field = record.get(place).unwrap_or("").trim();
             match field.parse::<f64>() {
                 Ok(value) if value.abs() <= LARGEST_LENGTH => Ok(value),
-                _ => Err(no_value(
-                    path,
-                    line,
-                    column,
-                    field,
-                    "a number from -1e30 to 1e30",
-                )),
+                _ => {
+                    let expected = "a number from -1e30 to 1e30";
+                    Err(no_value(path, line, column, field, expected))
+                }
             }
         };
         let [w, x, y, z] = self.quaternion;
         let quaternion = [float(w)?, float(x)?, float(y)?, float(z)?];
         let [x, y, z] = self.translation;
         let translation = [float(x)?, float(y)?, float(z)?];
-        let length = quaternion
-            .iter()
-            .map(|part| part * part)
-            .sum::<f64>()
-            .sqrt();
-        // Three digits a component keep the length within 1e-3; more is no rotation that was rounded.
+        let squares = quaternion.iter().map(|part| part * part);
+        let length = squares.sum::<f64>().sqrt();
+        // Three digits per component keep the length within 1e-3; more is no rotation that was rounded.
         if (length - 1.0).abs() > 1e-3 {
             let row = row_name();
             let message = format!("the quaternion of {row} has length {length}; a rotation has 1");

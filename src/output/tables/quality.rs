@@ -25,7 +25,7 @@ pub fn columns(qualities: &[Option<PoseQuality>]) -> Vec<Column> {
     ]
 }
 
-/// The same of one pose as JSON, with whether it is acceptable and near-native.
+/// The quality of one pose as JSON, with whether it is acceptable and near-native.
 pub fn object(quality: &PoseQuality) -> Map<String, Value> {
     let entries = [
         ("irmsd", json!(quality.irmsd)),
@@ -36,8 +36,6 @@ pub fn object(quality: &PoseQuality) -> Map<String, Value> {
         ("acceptable", json!(Criterion::Acceptable.is_met(quality))),
         ("near_native", json!(Criterion::NearNative.is_met(quality))),
     ];
-    let entries = entries.into_iter();
-    entries
-        .map(|(name, value)| (name.to_owned(), value))
-        .collect()
+    let entries = entries.map(|(name, value)| (name.to_owned(), value));
+    Map::from_iter(entries)
 }

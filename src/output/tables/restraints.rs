@@ -1,10 +1,9 @@
-//! Distance restraints of a run's poses: how many each satisfies, and `restraints.csv` with every distance.
+//! Distance restraints of a run's poses: the number that each satisfies, and `restraints.csv` with every distance.
 
 use std::io;
 
 use crate::dock::plan::DockPlan;
 use crate::output::tables::fields::{Column, number};
-use crate::priors::restrained::Restrained;
 use crate::rank::ranking::RankedPose;
 use crate::table_text::cells::TableWriter;
 
@@ -17,7 +16,7 @@ fn distances(plan: &DockPlan, pose: &RankedPose) -> impl Iterator<Item = (f64, b
     plan.restraints.at(positions, &pose.pose)
 }
 
-/// How many restraints a pose satisfies.
+/// The number of restraints that a pose satisfies.
 fn count(plan: &DockPlan, pose: &RankedPose) -> usize {
     distances(plan, pose).filter(|(_, met)| *met).count()
 }
@@ -37,11 +36,7 @@ pub fn met(plan: &DockPlan, poses: &[RankedPose]) -> Option<Column> {
     })
 }
 
-/// Writes `restraints.csv`: a row for each pose and restraint, with the effective distance and its bounds in
-/// Å.
-///
-/// # Errors
-/// Those of the stream.
+/// Writes `restraints.csv`: a row per pose and restraint, with the effective distance and its bounds in Å.
 pub fn write_to(
     plan: &DockPlan,
     poses: &[RankedPose],
@@ -50,12 +45,8 @@ pub fn write_to(
     let mut table = TableWriter::new(stream);
     table.row(HEADER)?;
     for (rank, pose) in (1..).zip(poses) {
-        let Restrained {
-            distances: known,
-            names,
-            ..
-        } = &plan.restraints;
-        let restraints = names.iter().zip(&known.list);
+        let of_plan = &plan.restraints;
+        let restraints = of_plan.names.iter().zip(&of_plan.distances.list);
         for ((name, restraint), (distance, met)) in restraints.zip(distances(plan, pose)) {
             let [distance, lower, upper] = [distance, restraint.lower, restraint.upper].map(number);
             table.row([

@@ -19,8 +19,8 @@ pub struct RunTable<'a> {
 }
 
 impl<'a> RunTable<'a> {
-    /// The table of some poses: with columns of sharp fits if these were looked for, with columns for diagnosis if they
-    /// are wanted, and further columns after them. A row for which a further column has no field gets an empty one.
+    /// The table of some poses: with columns of sharp fits if these were made, with columns for diagnosis if requested, and
+    /// further columns after them. A row for which a further column has no field gets an empty one.
     pub fn new(poses: &'a [RankedPose], choice: (bool, bool), further: &'a [Column]) -> Self {
         Self {
             poses,
@@ -70,12 +70,9 @@ impl<'a> RunTable<'a> {
     /// The first `count` rows as they would be read from the file.
     pub fn first(&self, count: usize) -> PoseTable {
         let poses = self.poses.get(..count).unwrap_or(self.poses);
-        let indexed = poses.iter().enumerate();
         PoseTable {
             header: self.header(),
-            records: indexed
-                .map(|(index, pose)| self.record(index, pose))
-                .collect(),
+            records: self.records().take(count).collect(),
             rows: pose_rows(poses),
         }
     }
@@ -86,20 +83,16 @@ impl<'a> RunTable<'a> {
         let header = self.header();
         let poses = indices.into_iter();
         let poses = poses.filter_map(|index| Some((index, self.poses.get(index)?)));
-        poses
-            .map(|(index, pose)| row_object(&header, &self.record(index, pose)))
-            .collect()
+        let objects = poses.map(|(index, pose)| row_object(&header, &self.record(index, pose)));
+        objects.collect()
     }
 
     /// Writes the table to a stream.
-    ///
-    /// # Errors
-    /// Those of the stream.
     pub fn write_to(&self, stream: &mut dyn io::Write) -> io::Result<()> {
         let mut table = TableWriter::new(stream);
         table.row(&self.header())?;
-        for (index, pose) in self.poses.iter().enumerate() {
-            table.row(&self.record(index, pose))?;
+        for record in self.records() {
+            table.row(&record)?;
         }
         table.flush()
     }

@@ -1,31 +1,32 @@
 //! Whether an exact fit stands out from the background of its own run.
 //!
 //! Every place that a run tries has an optimum, and the energies of wrong places are alike: they are its background.
-//! The margin of the best place is how far it lies below the middle of the others, in standard deviations. These follow
-//! from the better half of the others: overlaps that are left spread the worse half. The best sixteenth is left out,
+//! The margin of the best place is its distance below the middle of the others, in standard deviations. These follow
+//! from the better half of the others: remaining overlaps spread the worse half. The best sixteenth is left out,
 //! because it holds copies of the best place in a symmetric partner. Both are means of many places, so that no single
 //! place moves the margin by much (docs/research/defaults.md, "Sharp fits").
 
 use serde::Serialize;
 
-/// Fewest other places that say anything.
-const FEWEST: usize = 16;
-/// Margin from which a fit is exact after [`MANY`] rotations or more, standard deviations; from there on it scores.
+/// Fewest other places that form a background.
+const MIN_OTHERS: usize = 16;
+/// Margin from which a fit is exact and scores after [`MANY`] rotations or more, standard deviations.
 const MARGIN: f64 = 3.6;
-/// What fewer rotations add to it, for each power of ten: wrong fits have larger margins there (docs/research/defaults.md).
+/// Addition to it for fewer rotations, for each power of ten: wrong fits have larger margins there
+/// (docs/research/defaults.md).
 const MARGIN_OF_FEW: f64 = 0.65;
 const MANY: usize = 3600;
-/// Margin from which fits score where this is requested, whether or not one stands out.
+/// Margin from which fits score on request, whether or not one stands out.
 pub(super) const REQUESTED: f64 = 2.0;
 /// Mean of a normal distribution between its first and sixth sixteenth, standard deviations below its middle.
 const NORMAL: f64 = 0.8199;
-/// Least standard deviation of a background, RT: poses of a kind have none.
-const LEAST_DEVIATION: f64 = 1.0;
-/// Score of an RT below the energy at which fits begin to score. Exact fits lie up to 40 RT below it, and the soft scores
+/// Least standard deviation of a background, RT: equal poses have none.
+const MIN_DEVIATION: f64 = 1.0;
+/// Score of an RT below the energy at which fits begin to score. Exact fits are up to 40 RT below it, and the soft scores
 /// of a run's best 250 poses span about 1,400.
 pub(super) const SCORE_PER_RT: f64 = 400.0;
 
-/// What the sharp stage saw.
+/// Finding of the sharp stage.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum SharpFinding {
@@ -51,11 +52,11 @@ pub struct Evidence {
 }
 
 impl Evidence {
-    /// Evidence by the energies of different places, best first, of a search of so many rotations; `None` if there are
+    /// Evidence by the energies of different places, best first, of a search of this many rotations; `None` if there are
     /// too few places.
     pub fn of(energies: &[f64], rotations: usize) -> Option<Self> {
         let (best, others) = energies.split_first()?;
-        if others.len() < FEWEST {
+        if others.len() < MIN_OTHERS {
             return None;
         }
         let middle = mean_between(others, [4, 12]);
@@ -63,12 +64,12 @@ impl Evidence {
         Some(Self {
             best: *best,
             middle,
-            deviation: deviation.max(LEAST_DEVIATION),
+            deviation: deviation.max(MIN_DEVIATION),
             needed: MARGIN + MARGIN_OF_FEW * (MANY as f64 / rotations as f64).log10().max(0.0),
         })
     }
 
-    /// Standard deviations that the best place lies below the background.
+    /// Standard deviations of the best place below the background.
     pub fn margin(&self) -> f64 {
         (self.middle - self.best) / self.deviation
     }
@@ -144,9 +145,9 @@ mod tests {
     /// Copies of one place have no spread, and few places no background.
     #[test]
     fn few_or_equal_places_prove_nothing() {
-        assert_eq!(Evidence::of(&[-50.0; FEWEST], MANY), None);
+        assert_eq!(Evidence::of(&[-50.0; MIN_OTHERS], MANY), None);
         assert_eq!(Evidence::of(&[], MANY), None);
-        assert!(!with(&[-51.0], [-50.0; FEWEST].into_iter()).stands_out());
+        assert!(!with(&[-51.0], [-50.0; MIN_OTHERS].into_iter()).stands_out());
         assert!(with(&[-50.0], [-50.0; 39].into_iter()).margin().is_finite());
     }
 

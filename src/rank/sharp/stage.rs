@@ -1,37 +1,41 @@
-//! Optima of the best poses of a run, and the evidence that they are.
+//! Optima of the best poses of a run, their evidence, and the poses moved into them.
 
-use super::evidence::Evidence;
+use super::SharpPose;
+use super::evidence::{Evidence, REQUESTED, SCORE_PER_RT, SharpFinding};
+use crate::options::SharpChoice;
 use crate::rank::candidates::Candidate;
 use crate::rank::cluster::{RigidBody, greedy};
+use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::sharp::{Optimum, PairList, SharpFit};
+use knotdock_scoring::terms::pose::{Rescorer, Workspace};
 use knotdock_structures::{Knots, PolarAtom};
 use rayon::prelude::*;
 
 /// Poses that descend: the best of the run by the soft score.
 const DESCENDING: usize = 250;
 /// Places whose neighbourhood is tried, too: those of the best optima.
-const SEVERAL: usize = 20;
+const MAX_TRIED: usize = 20;
 /// RMSD of the ligand in Å within which two optima are one place.
 const PLACE: f64 = 2.5;
 
-/// What the sharp stage reads of two bodies.
+/// Two bodies as the sharp stage reads them.
 #[derive(Clone, Copy)]
 pub(crate) struct SharpInputs<'a> {
     /// Receptor and ligand.
     pub bodies: [&'a Knots; 2],
-    /// The parts of their atoms in hydrogen bonds.
+    /// The roles of their atoms in hydrogen bonds.
     pub polar: [&'a [PolarAtom]; 2],
 }
 
 /// Optima of a run's best poses.
 pub(crate) struct Optima {
-    /// The optimum of each of the first candidates; `None` where nothing touches.
+    /// The optimum of each of the first candidates; `None` if nothing touches.
     pub of_candidates: Vec<Option<Optimum>>,
-    /// The best place against the others; `None` where there are too few.
+    /// The best place against the others; `None` if there are too few.
     pub evidence: Option<Evidence>,
 }
 
-/// Lets the best candidates of a search of so many rotations descend, and looks about the places of the best optima.
+/// Lets the best candidates of a search of this many rotations descend, and searches about the places of the best optima.
 pub(crate) fn optima(
     inputs: &SharpInputs,
     candidates: &[Candidate],
@@ -48,7 +52,7 @@ pub(crate) fn optima(
         .collect_into_vec(&mut of_candidates);
     let firsts = first_of_places(&of_candidates, body);
     let tried: Vec<(usize, Optimum)> = firsts
-        .get(..SEVERAL)
+        .get(..MAX_TRIED)
         .unwrap_or(&firsts)
         .par_iter()
         .map_init(PairList::default, |list, &(index, first)| {
@@ -58,14 +62,10 @@ pub(crate) fn optima(
         })
         .collect();
     for (index, optimum) in tried {
-        if let Some(of_candidate) = of_candidates.get_mut(index) {
-            *of_candidate = Some(optimum);
-        }
+        of_candidates[index] = Some(optimum);
     }
-    let energies: Vec<f64> = first_of_places(&of_candidates, body)
-        .iter()
-        .map(|(_, optimum)| optimum.energy.total())
-        .collect();
+    let firsts = first_of_places(&of_candidates, body).into_iter();
+    let energies: Vec<f64> = firsts.map(|(_, optimum)| optimum.energy.total()).collect();
     Optima {
         evidence: Evidence::of(&energies, rotations),
         of_candidates,
@@ -89,4 +89,78 @@ fn first_of_places(optima: &[Option<Optimum>], body: &RigidBody) -> Vec<(usize, 
         is_first
     });
     firsts.map(|(found, _)| found).collect()
+}
+
+/// Records the optimum of each candidate. If an exact fit stands out, or sharp fits are requested, the candidates that score
+/// more in their optima move there, and all are sorted anew.
+pub(crate) fn settle(
+    candidates: &mut [Candidate],
+    optima: &Optima,
+    choice: SharpChoice,
+    (scorer, rescorer): (&ExactSum, Option<&Rescorer>),
+) -> SharpFinding {
+    let finding = match (&optima.evidence, choice) {
+        (Some(evidence), _) if evidence.stands_out() => SharpFinding::ExactFit,
+        (Some(_), SharpChoice::On) => SharpFinding::Requested,
+        _ => SharpFinding::NoExactFit,
+    };
+    let begins = optima.evidence.and_then(|evidence| match finding {
+        _ if choice == SharpChoice::On => Some(evidence.at_margin(REQUESTED)),
+        SharpFinding::ExactFit => Some(evidence.at_margin(evidence.needed)),
+        _ => None,
+    });
+    candidates
+        .par_iter_mut()
+        .zip(&optima.of_candidates)
+        .for_each_init(Workspace::default, |workspace, (candidate, optimum)| {
+            let Some(optimum) = optimum else {
+                return;
+            };
+            let energy = optimum.energy.total();
+            candidate.sharp = Some(SharpPose {
+                energy,
+                clashes: optimum.energy.clashes,
+                score: begins.map(|_| 0.0),
+            });
+            let reward = begins.map_or(0.0, |begins| SCORE_PER_RT * (begins - energy));
+            if reward > 0.0 {
+                let settled = settled(candidate, optimum, reward, (scorer, rescorer), workspace);
+                // The better of the two, so that the score grows without a step.
+                if settled.score > candidate.score {
+                    *candidate = settled;
+                }
+            }
+        });
+    if begins.is_some() {
+        candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+    }
+    finding
+}
+
+/// A candidate moved into its optimum, scored there by the exact sum, the pose terms and the reward of its sharp fit.
+fn settled(
+    candidate: &Candidate,
+    optimum: &Optimum,
+    reward: f64,
+    (scorer, rescorer): (&ExactSum, Option<&Rescorer>),
+    workspace: &mut Workspace,
+) -> Candidate {
+    let terms = scorer.terms(&optimum.pose);
+    let pose_terms = rescorer
+        .map(|rescorer| rescorer.score(&optimum.pose, workspace))
+        .unwrap_or_default();
+    Candidate {
+        pose: optimum.pose,
+        start: optimum.pose,
+        refined: false,
+        score: terms.score + pose_terms.sum() + reward,
+        pose_terms,
+        terms: Some(terms),
+        sharp: Some(SharpPose {
+            energy: optimum.energy.total(),
+            clashes: optimum.energy.clashes,
+            score: Some(reward),
+        }),
+        ..*candidate
+    }
 }

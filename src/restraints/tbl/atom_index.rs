@@ -1,5 +1,4 @@
-//! The atoms of receptor and ligand, by chain, residue and name: each test looks at distinct names and numbers, not
-//! at atoms.
+//! The atoms of receptor and ligand, by chain, residue and name, so that a test is made once per name or number.
 
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -13,7 +12,7 @@ pub(super) type ResidueNumber = (i64, Option<char>);
 /// Atoms by their places, those of the receptor first.
 pub(super) struct AtomIndex<'a> {
     pub(super) atoms: Vec<&'a Atom>,
-    /// How many are the receptor's.
+    /// Number of the receptor's atoms.
     pub(super) receptor: usize,
     pub(super) chains: BTreeMap<&'a str, Vec<usize>>,
     pub(super) residue_names: BTreeMap<&'a str, Vec<usize>>,

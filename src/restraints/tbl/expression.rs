@@ -21,6 +21,7 @@ use crate::restraints::tbl::name_pattern::NamePattern;
 use crate::restraints::tbl::tokens::{Place, Token, Tokens, unexpected};
 use crate::table_text::named_columns::shortened;
 
+const ATOM_NAME: &str = "the name of an atom";
 /// Most parentheses and `not` within each other: a recursion without a bound would run out of stack.
 const MAX_DEPTH: usize = 100;
 
@@ -31,25 +32,17 @@ pub(super) enum Expression {
     Hydrogen,
     Chain(NamePattern),
     ResidueName(NamePattern),
-    Residue(ResidueTest),
+    /// Residues by number and insertion code as one text.
+    Residue(NamePattern),
+    /// Residues from one to another, each with its insertion code: none comes before `A`.
+    Residues([ResidueNumber; 2]),
     Name(NamePattern),
     Not(Box<Expression>),
     And(Vec<Expression>),
     Or(Vec<Expression>),
 }
 
-/// Which residues are meant by their numbers.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum ResidueTest {
-    /// One number without an insertion code.
-    Number(i64),
-    /// Number and insertion code as one text.
-    Text(NamePattern),
-    /// From one to another, each with its insertion code: none comes before `A`.
-    Range([ResidueNumber; 2]),
-}
-
-/// What tests of `name` and `hydrogen` are applied to.
+/// Names that tests of `name` and `hydrogen` are applied to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Tested {
     /// Each atom.
@@ -74,7 +67,15 @@ impl Expression {
             Self::Hydrogen => index.atoms.iter().map(|atom| atom.is_hydrogen()).collect(),
             Self::Chain(pattern) => named(pattern, &index.chains),
             Self::ResidueName(pattern) => named(pattern, &index.residue_names),
-            Self::Residue(test) => test.select(index),
+            Self::Residue(pattern) => {
+                let residues = index.residues.values();
+                let residues = residues.filter(|(text, _)| pattern.holds(text));
+                index.at(residues.map(|(_, places)| places))
+            }
+            Self::Residues([first, last]) => {
+                let residues = index.residues.range(*first..=*last);
+                index.at(residues.map(|(_, (_, places))| places))
+            }
             Self::Name(pattern) => match tested {
                 Tested::Atoms => named(pattern, &index.names),
                 Tested::Residues => all(),
@@ -90,47 +91,19 @@ impl Expression {
                 chosen.iter_mut().for_each(|chosen| *chosen = !*chosen);
                 chosen
             }
-            Self::And(parts) => combined(parts, |part| part.select(index, tested), |a, b| a & b),
-            Self::Or(parts) => combined(parts, |part| part.select(index, tested), |a, b| a | b),
-        }
-    }
-}
-
-/// The sets of at least one part, combined atom by atom.
-fn combined(
-    parts: &[Expression],
-    select: impl Fn(&Expression) -> Vec<bool>,
-    combine: fn(bool, bool) -> bool,
-) -> Vec<bool> {
-    let mut chosen = Vec::new();
-    for (place, part) in parts.iter().enumerate() {
-        let of_part = select(part);
-        if place == 0 {
-            chosen = of_part;
-        } else {
-            for (chosen, other) in chosen.iter_mut().zip(of_part) {
-                *chosen = combine(*chosen, other);
-            }
-        }
-    }
-    chosen
-}
-
-impl ResidueTest {
-    fn select(&self, index: &AtomIndex) -> Vec<bool> {
-        let residues = &index.residues;
-        match self {
-            Self::Number(number) => {
-                let residue = residues.get(&(*number, None)).into_iter();
-                index.at(residue.map(|(_, places)| places))
-            }
-            Self::Text(pattern) => {
-                let residues = residues.values().filter(|(text, _)| pattern.holds(text));
-                index.at(residues.map(|(_, places)| places))
-            }
-            Self::Range([first, last]) => {
-                let residues = residues.range(*first..=*last);
-                index.at(residues.map(|(_, (_, places))| places))
+            Self::And(parts) | Self::Or(parts) => {
+                let is_all = matches!(self, Self::And(_));
+                let mut chosen = vec![is_all; index.atoms.len()];
+                for part in parts {
+                    for (chosen, other) in chosen.iter_mut().zip(part.select(index, tested)) {
+                        *chosen = if is_all {
+                            *chosen & other
+                        } else {
+                            *chosen | other
+                        };
+                    }
+                }
+                chosen
             }
         }
     }
@@ -153,20 +126,15 @@ impl<'a> Selections<'a> {
 
     /// The next token, which must be there.
     pub(super) fn need(&mut self, expected: &'static str) -> Result<(Token<'a>, Place), Error> {
-        let end = self.tokens.place();
-        self.tokens
-            .next()?
-            .ok_or_else(|| end.fault(unexpected(expected, "the end of the file")))
+        let (end, next) = (self.tokens.place(), self.tokens.next()?);
+        next.ok_or_else(|| end.fault(unexpected(expected, "the end of the file")))
     }
 
     /// The selection that follows, and the place of its parenthesis.
     pub(super) fn selection(&mut self) -> Result<(Expression, Place), Error> {
         const EXPECTED: &str = "a selection in parentheses";
         match self.need(EXPECTED)? {
-            (Token::Open, place) => {
-                let expression = self.any_of(1, place)?;
-                Ok((expression, place))
-            }
+            (Token::Open, place) => Ok((self.any_of(1, place)?, place)),
             (token, place) => Err(place.fault(unexpected(EXPECTED, &token.shown()))),
         }
     }
@@ -176,7 +144,7 @@ impl<'a> Selections<'a> {
         if depth > MAX_DEPTH {
             return Err(open.fault(too_deep()));
         }
-        // Alternatives, each as what must hold at once.
+        // Alternatives, each with the tests that must hold at once.
         let mut alternatives = Vec::new();
         let mut all_of = vec![self.factor(depth)?];
         loop {
@@ -186,10 +154,8 @@ impl<'a> Selections<'a> {
                 all_of.push(self.factor(depth)?);
             } else if token.is_keyword("or") {
                 let next = vec![self.factor(depth)?];
-                alternatives.push(joined(
-                    std::mem::replace(&mut all_of, next),
-                    Expression::And,
-                ));
+                let tests = std::mem::replace(&mut all_of, next);
+                alternatives.push(joined(tests, Expression::And));
             } else if token == Token::Close {
                 alternatives.push(joined(all_of, Expression::And));
                 return Ok(joined(alternatives, Expression::Or));
@@ -211,33 +177,26 @@ impl<'a> Selections<'a> {
             }
             return Ok(Expression::Not(Box::new(self.factor(depth + 1)?)));
         }
-        if token.is_keyword("all") {
-            return Ok(Expression::All);
-        }
-        if token.is_keyword("hydrogen") {
-            return Ok(Expression::Hydrogen);
-        }
-        if token.is_keyword("segid") || token.is_keyword("chain") {
-            return self.chain();
-        }
-        if token.is_keyword("residue") {
-            return self.residue(true);
-        }
-        if token.is_keyword("resname") {
-            return Ok(Expression::ResidueName(self.name("the name of a residue")?));
-        }
-        if token.is_keyword("name") {
-            return Ok(Expression::Name(self.name("the name of an atom")?));
-        }
-        if token.is_keyword("atom") {
-            let tests = vec![
+        const KEYWORDS: [&str; 8] = [
+            "all", "hydrogen", "segid", "chain", "residue", "resname", "name", "atom",
+        ];
+        let keyword = KEYWORDS
+            .into_iter()
+            .find(|keyword| token.is_keyword(keyword));
+        Ok(match keyword.unwrap_or_default() {
+            "all" => Expression::All,
+            "hydrogen" => Expression::Hydrogen,
+            "segid" | "chain" => self.chain()?,
+            "residue" => self.residue(true)?,
+            "resname" => Expression::ResidueName(self.name("the name of a residue")?),
+            "name" => Expression::Name(self.name(ATOM_NAME)?),
+            "atom" => Expression::And(vec![
                 self.chain()?,
                 self.residue(false)?,
-                Expression::Name(self.name("the name of an atom")?),
-            ];
-            return Ok(Expression::And(tests));
-        }
-        Err(place.fault(unexpected(expected, &token.shown())))
+                Expression::Name(self.name(ATOM_NAME)?),
+            ]),
+            _ => return Err(place.fault(unexpected(expected, &token.shown()))),
+        })
     }
 
     /// A name that follows.
@@ -252,8 +211,9 @@ impl<'a> Selections<'a> {
     /// A chain: in its own case where one is called so, else in any case.
     fn chain(&mut self) -> Result<Expression, Error> {
         let name = self.name("the name of a chain")?;
-        // Where a chain has no name reports say `_`.
-        let name = if name == NamePattern::new("_") && !self.chains.contains("_") {
+        // Reports write `_` for a chain without a name.
+        let is_unnamed = name == NamePattern::new("_") && !self.chains.contains("_");
+        let name = if is_unnamed {
             NamePattern::literal("")
         } else {
             name
@@ -263,7 +223,7 @@ impl<'a> Selections<'a> {
         Ok(Expression::Chain(if is_there { with_case } else { name }))
     }
 
-    /// Residues by number: one or, where it may be, a range.
+    /// Residues by number: one or, if that is allowed, a range.
     fn residue(&mut self, may_be_range: bool) -> Result<Expression, Error> {
         const EXPECTED: &str = "the number of a residue";
         let (token, place) = self.need(EXPECTED)?;
@@ -272,43 +232,34 @@ impl<'a> Selections<'a> {
             Token::Quoted(word) => (word, NamePattern::literal(word)),
             token => return Err(place.fault(unexpected(EXPECTED, &token.shown()))),
         };
-        if may_be_range && self.tokens.skip_colon()? {
+        if may_be_range && self.tokens.skip(|token| token == Token::Colon)? {
             let (last, last_place) = match self.need(EXPECTED)? {
                 (Token::Word(last) | Token::Quoted(last), place) => (last, place),
                 (token, place) => return Err(place.fault(unexpected(EXPECTED, &token.shown()))),
             };
-            let range = [number(word), number(last)];
-            return match range {
-                [Some(first), Some(last)] if first <= last => {
-                    Ok(Expression::Residue(ResidueTest::Range([first, last])))
-                }
-                _ => {
-                    let end = last_place.byte + last.len();
-                    let written = self.tokens.between(place.byte, end);
-                    Err(place.fault(
-                        Error::input(format!("`{}` is no range of residues", shortened(written)))
-                            .help("give the first residue before the last, as in `resid 10:20`"),
-                    ))
-                }
-            };
+            if let (Some(first), Some(last)) = (number(word), number(last))
+                && first <= last
+            {
+                return Ok(Expression::Residues([first, last]));
+            }
+            let end = last_place.byte + last.len();
+            let written = shortened(self.tokens.between(place.byte, end));
+            let error = Error::input(format!("`{written}` is no range of residues"));
+            return Err(place
+                .fault(error.help("give the first residue before the last, as in `resid 10:20`")));
         }
-        let test = match word.parse() {
-            Ok(number) => ResidueTest::Number(number),
-            Err(_) => ResidueTest::Text(pattern),
-        };
-        Ok(Expression::Residue(test))
+        Ok(match word.parse() {
+            Ok(number) => Expression::Residues([(number, None); 2]),
+            Err(_) => Expression::Residue(pattern),
+        })
     }
 }
 
-/// Parts as one expression: a single part is its own.
+/// Parts as one expression; a single part stays as it is.
 fn joined(mut parts: Vec<Expression>, join: fn(Vec<Expression>) -> Expression) -> Expression {
-    match parts.pop() {
-        Some(only) if parts.is_empty() => only,
-        Some(last) => {
-            parts.push(last);
-            join(parts)
-        }
-        None => join(parts),
+    match parts.len() {
+        1 => parts.remove(0),
+        _ => join(parts),
     }
 }
 
@@ -324,8 +275,6 @@ fn number(text: &str) -> Option<ResidueNumber> {
 
 /// A selection with too many parentheses and `not` within each other.
 fn too_deep() -> Error {
-    Error::input(format!(
-        "the selection is nested more than {MAX_DEPTH} deep"
-    ))
-    .help("leave out parentheses that are not needed")
+    let message = format!("the selection is nested more than {MAX_DEPTH} deep");
+    Error::input(message).help("leave out parentheses that are not needed")
 }

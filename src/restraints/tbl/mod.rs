@@ -15,9 +15,9 @@
 //!   its distance.
 //! - The upper bound is widened for the hydrogens that are not read (`hydrogens`), unless the caller wants it as
 //!   written.
-//! - What ARIA writes behind the distances (`peak`, `volume`, `ppm1` ...) is passed over. A `weight` must be 1.
-//! - `segid` and `chain` are the chain. `resid 52A` has an insertion code. Case counts in names of chains where a chain
-//!   is called so.
+//! - ARIA's entries after the distances (`peak`, `volume`, `ppm1` ...) are passed over. A `weight` must be 1.
+//! - `segid` and `chain` are the chain. `resid 52A` has an insertion code. Case counts in names of chains if a chain
+//!   has the name in that case.
 //! - Comments are `! to the end of the line` and `{ ... }`. Keywords may be cut to four letters.
 //!
 //! Sources: the CNS language tutorial and the X-PLOR manual, NOE statement.
@@ -76,14 +76,12 @@ pub(super) fn parse(
     }
     match within.first() {
         Some(place) if list.is_empty() => {
-            let which = match within.len() {
+            let subject = match within.len() {
                 1 => "the restraint is".to_owned(),
                 count => format!("all {count} restraints are"),
             };
-            let error = Error::input(format!(
-                "{which} within one molecule, which docking does not change"
-            ));
-            Err(place.fault(error.help(
+            let message = format!("{subject} within one molecule, which docking does not change");
+            Err(place.fault(Error::input(message).help(
                 "select atoms of the receptor in one and of the ligand in the other: rigid docking keeps distances \
                  within a molecule",
             )))
@@ -107,7 +105,7 @@ struct Statements<'a> {
 type Pair = ([Vec<usize>; 2], usize);
 
 impl Statements<'_> {
-    /// The statement behind `assign`, which is at `place`; `None` if it is, or may be, within one molecule.
+    /// The statement after `assign`, which is at `place`; `None` if it is, or may be, within one molecule.
     fn assign(&mut self, name: String, place: Place) -> Result<Option<NamedRestraint>, Error> {
         let mut alternatives = vec![self.pair()?];
         let bounds = Bounds::about(
@@ -116,11 +114,12 @@ impl Statements<'_> {
             self.distance("the tolerance above")?,
         );
         let bounds = bounds.map_err(|fault| place.fault(fault))?;
+        let is_passed_over = |token: Token| PASSED_OVER.iter().any(|one| token.is_keyword(one));
         // An alternative that is written twice counts once.
         let mut known = HashSet::new();
         loop {
             let tokens = &mut self.selections.tokens;
-            if tokens.skip_keyword(&["or"])?.is_some() {
+            if tokens.skip(|token| token.is_keyword("or"))? {
                 if known.is_empty() {
                     known.extend(alternatives.iter().cloned());
                 }
@@ -128,19 +127,17 @@ impl Statements<'_> {
                 if known.insert(pair.clone()) {
                     alternatives.push(pair);
                 }
-            } else if tokens.skip_keyword(&["weight"])?.is_some() {
+            } else if tokens.skip(|token| token.is_keyword("weight"))? {
                 let (weight, text, place) = self.number("a weight")?;
                 if weight != 1.0 {
-                    let message = format!(
-                        "the weight is `{}`; all restraints count alike",
-                        shortened(text)
-                    );
+                    let text = shortened(text);
+                    let message = format!("the weight is `{text}`; all restraints count alike");
+                    let error = Error::input(message);
                     return Err(place.fault(
-                        Error::input(message)
-                            .help("leave the weight out, or leave out the whole statement"),
+                        error.help("leave the weight out, or leave out the whole statement"),
                     ));
                 }
-            } else if tokens.skip_keyword(&PASSED_OVER)?.is_some() {
+            } else if tokens.skip(is_passed_over)? {
                 self.number("a number")?;
             } else {
                 break;
@@ -173,14 +170,12 @@ impl Statements<'_> {
             return Ok(None);
         }
         let sides = usize::from(first.has_hydrogens) + usize::from(second.has_hydrogens);
-        let pair = if first.side == 0 {
-            [first.atoms, second.atoms]
-        } else {
-            [second.atoms, first.atoms]
-        };
-        self.selected
-            .add(&pair)
-            .map_err(|fault| place.fault(fault))?;
+        let mut pair = [first.atoms, second.atoms];
+        if first.side == 1 {
+            pair.reverse();
+        }
+        let added = self.selected.add(&pair);
+        added.map_err(|fault| place.fault(fault))?;
         Ok(Some((pair, sides)))
     }
 

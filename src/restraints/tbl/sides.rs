@@ -1,4 +1,4 @@
-//! Which molecule a selection is of. Statements do not say: the chains that only one molecule has decide.
+//! The molecule of a selection. Statements do not name it: the chains that only one molecule has decide.
 
 use std::collections::BTreeSet;
 
@@ -10,14 +10,14 @@ use crate::restraints::tbl::atom_index::AtomIndex;
 use crate::restraints::tbl::expression::{Expression, Tested};
 use crate::table_text::named_columns::listed;
 
-/// Receptor and ligand as statements see them: all their atoms in one.
+/// Receptor and ligand with all their atoms in one index.
 pub(super) struct Sides<'a> {
     molecules: [&'a Molecule; 2],
     index: AtomIndex<'a>,
     chains: [BTreeSet<&'a str>; 2],
 }
 
-/// What a selection selects.
+/// The atoms of a selection.
 pub(super) struct Selected {
     /// The molecule, 0 or 1.
     pub(super) side: usize,
@@ -27,8 +27,7 @@ pub(super) struct Selected {
     pub(super) has_hydrogens: bool,
 }
 
-/// The words for the molecules.
-pub(super) const SIDES: [&str; 2] = ["receptor", "ligand"];
+const SIDES: [&str; 2] = ["receptor", "ligand"];
 
 impl<'a> Sides<'a> {
     pub(super) fn new(molecules: [&'a Molecule; 2]) -> Self {
@@ -58,11 +57,9 @@ impl<'a> Sides<'a> {
             let atoms = atoms.filter(|(_, chosen)| **chosen).map(|(at, _)| at);
             heavy(&self.molecules[side].atoms, atoms.collect())
         });
-        let chain_names = |side: usize, atoms: &[usize]| -> BTreeSet<&str> {
-            let atoms = atoms
-                .iter()
-                .map(|&index| &self.molecules[side].atoms[index]);
-            atoms.map(|atom| atom.chain.as_str()).collect()
+        let chain_names = |side: usize, chosen: &[usize]| -> BTreeSet<&str> {
+            let atoms = &self.molecules[side].atoms;
+            chosen.iter().map(|&at| atoms[at].chain.as_str()).collect()
         };
         let names = [chain_names(0, &receptor), chain_names(1, &ligand)];
         let is_shared = |chain: &&&str| self.chains.iter().all(|chains| chains.contains(**chain));
@@ -86,12 +83,10 @@ impl<'a> Sides<'a> {
                 ))
                 .help("name the chain of one of the two, as in `segid A`"))
             }
-            (true, true) => Err(Error::input(format!(
-                "{} selects no atom; {}",
-                written(),
-                self.present(expression)
-            ))
-            .help(NO_ATOM)),
+            (true, true) => {
+                let (written, present) = (written(), self.present(expression));
+                Err(Error::input(format!("{written} selects no atom; {present}")).help(NO_ATOM))
+            }
         }
     }
 
@@ -100,11 +95,8 @@ impl<'a> Sides<'a> {
         let carries = expression.select(&self.index, Tested::Hydrogens);
         let first = [0, self.index.receptor][side];
         let has_hydrogens = |&at: &usize| {
-            let may = matches!(
-                self.molecules[side].atoms[at].element.as_str(),
-                "C" | "N" | "O" | "S"
-            );
-            may && carries[first + at]
+            let element = self.molecules[side].atoms[at].element.as_str();
+            matches!(element, "C" | "N" | "O" | "S") && carries[first + at]
         };
         Selected {
             side,
@@ -113,8 +105,8 @@ impl<'a> Sides<'a> {
         }
     }
 
-    /// What there is in place of atoms that a selection does not find: the atoms of its first residue where only
-    /// their names are wrong, else chains and numbers.
+    /// The alternatives to atoms that a selection does not find: the atoms of its first residue if only their names are
+    /// wrong, else chains and numbers.
     fn present(&self, expression: &Expression) -> String {
         let chosen = expression.select(&self.index, Tested::Residues);
         let chosen: [&[bool]; 2] = chosen.split_at(self.index.receptor).into();

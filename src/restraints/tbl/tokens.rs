@@ -32,10 +32,9 @@ impl Token<'_> {
         let Self::Word(word) = self else {
             return false;
         };
+        let start = keyword.get(..word.len());
         word.len() >= keyword.len().min(4)
-            && keyword
-                .get(..word.len())
-                .is_some_and(|start| start.eq_ignore_ascii_case(word))
+            && start.is_some_and(|start| start.eq_ignore_ascii_case(word))
     }
 }
 
@@ -60,7 +59,7 @@ impl Place {
     }
 }
 
-/// Something else than a statement needs.
+/// A token that does not continue a statement.
 pub(super) fn unexpected(expected: &str, found: &str) -> Error {
     Error::input(format!("there must be {expected}, not {found}")).help(
         "write `assign (selection) (selection) distance minus plus`. A selection is made of resid, resname, name, \
@@ -69,8 +68,8 @@ pub(super) fn unexpected(expected: &str, found: &str) -> Error {
 }
 
 /// A comment or a quoted word that does not end.
-fn unclosed(what: &str) -> Error {
-    Error::input(format!("the {what} that begins here does not end"))
+fn unclosed(part: &str) -> Error {
+    Error::input(format!("the {part} that begins here does not end"))
         .help("close it: a comment with }, a quoted word with \" on its line")
 }
 
@@ -113,41 +112,20 @@ impl<'a> Tokens<'a> {
             ')' => self.sign(Token::Close),
             ':' => self.sign(Token::Colon),
             '"' => self.quoted()?,
-            '}' => {
-                return Err(place.fault(unexpected("a { before it", "`}`")));
-            }
+            '}' => return Err(place.fault(unexpected("a { before it", "`}`"))),
             _ => Token::Word(self.take_until(|c| c.is_whitespace() || "():\"!{}=".contains(c))),
         };
         Ok(Some((token, place)))
     }
 
-    /// Passes over a colon, if one comes next.
-    pub(super) fn skip_colon(&mut self) -> Result<bool, Error> {
+    /// Passes over the next token if it is of a kind; whether it is.
+    pub(super) fn skip(&mut self, is_of_kind: impl Fn(Token) -> bool) -> Result<bool, Error> {
         let before = self.place;
-        self.skip_blanks()?;
-        let is_colon = self.rest().starts_with(':');
-        if is_colon {
-            self.step();
-        } else {
+        let is_skipped = self.next()?.is_some_and(|(token, _)| is_of_kind(token));
+        if !is_skipped {
             self.place = before;
         }
-        Ok(is_colon)
-    }
-
-    /// Passes over a word that one of these keywords is, if one comes next.
-    pub(super) fn skip_keyword(
-        &mut self,
-        keywords: &[&'static str],
-    ) -> Result<Option<&'static str>, Error> {
-        let before = self.place;
-        if let Some((token, _)) = self.next()? {
-            let mut keywords = keywords.iter();
-            if let Some(keyword) = keywords.find(|keyword| token.is_keyword(keyword)) {
-                return Ok(Some(keyword));
-            }
-        }
-        self.place = before;
-        Ok(None)
+        Ok(is_skipped)
     }
 
     /// Passes over blanks and comments. `=` is a blank, too: `resid = 10` is `resid 10`.

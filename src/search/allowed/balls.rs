@@ -7,7 +7,7 @@ use nalgebra::Vector3;
 /// Largest distance in Å of an atom from the middle of its clump.
 const CLUMP: f64 = 4.0;
 /// Most balls of a restraint; with more of them clumps grow.
-const MOST: usize = 2000;
+const MAX_BALLS: usize = 2000;
 /// Pairs of atoms that may bring an effective distance below the shortest.
 const PAIRS: usize = 64;
 
@@ -51,7 +51,7 @@ pub(super) fn of_restraint(
                 }));
             }
         }
-        if balls.len() <= MOST.max(restraint.pairs.len()) {
+        if balls.len() <= MAX_BALLS.max(restraint.pairs.len()) {
             return balls;
         }
         widest *= 1.5;
@@ -96,7 +96,7 @@ mod tests {
         assert_eq!(one, [(Vector3::new(1.0, 2.0, 3.0), 0.0)]);
     }
 
-    /// A pair of atoms has one ball: the bound, and what the samples leave open at the ligand's atom.
+    /// A pair of atoms has one ball: the bound, and the allowance for the steps between samples at the ligand's atom.
     #[test]
     fn a_pair_has_the_ball_of_its_bound() {
         let one = |x: [f64; 3]| Knots::new(vec![x], vec![1.7]).unwrap();
@@ -130,7 +130,7 @@ mod tests {
         };
         let none = Vector3::zeros();
         let balls = of_restraint(&restraint, [&receptor, &ligand], [none, none], (1.0, 0.1));
-        assert!(!balls.is_empty() && balls.len() <= MOST);
+        assert!(!balls.is_empty() && balls.len() <= MAX_BALLS);
         // 2 Å times 64^(1/6) = 2, and half of a voxel's diagonal.
         assert!(balls.iter().all(|ball| ball.radius >= 5.0));
     }

@@ -1,10 +1,10 @@
-//! How many restraints have a ball that meets a box of voxels.
+//! The number of restraints that have a ball that meets a box of voxels.
 
 /// Balls that are looked at together.
 const LANES: usize = 16;
 /// Balls after which a count may end early.
 const TOGETHER: usize = 4 * LANES;
-/// In the place of a square, where there is no ball.
+/// In place of a square without a ball.
 const NONE: f32 = -1.0;
 
 /// Voxels from one place to another on an axis, both included.
@@ -28,7 +28,7 @@ impl Span {
         [factor * self.low, factor * self.high]
     }
 
-    /// How far a place lies outside.
+    /// Distance of a place from it.
     #[inline(always)]
     fn distance(self, at: f32) -> f32 {
         // By comparisons, which are one instruction each: `max` looks for NaN as well.
@@ -45,8 +45,7 @@ pub(super) struct Balls {
     z: Vec<f32>,
     /// Squares of the radii.
     square: Vec<f32>,
-    /// Where the balls of each restraint with several end, and before them where those of the single ones do. In
-    /// whole lanes.
+    /// Ends of the balls of each restraint with several, after the end of the single ones. In whole lanes.
     ends: Vec<usize>,
     /// Restraints with one ball.
     single: usize,
@@ -106,7 +105,7 @@ impl Balls {
         }
     }
 
-    /// Squares of what is left of the balls' radii along the rows of a box: negative where a ball meets none.
+    /// Squares of the remaining radii of the balls along the rows of a box: negative if a ball meets none.
     #[inline(always)]
     pub fn left_along(&self, x: Span, y: Span, left: &mut Vec<f32>) {
         left.resize(self.x.len(), NONE);

@@ -1,20 +1,19 @@
 //! Translations that distance restraints allow, at each rotation of a search.
 //!
-//! At a rotation R a restraint of two atoms x and y to a distance of `upper` holds where the translation t lies in the
-//! ball about x - R y of that radius. So a restraint is a union of balls of the grid, and so many of them have to
-//! hold one voxel. Peaks are looked for among those voxels alone: all poses that a run keeps can satisfy the
-//! restraints.
+//! At a rotation R a restraint of two atoms x and y to a distance of `upper` holds if the translation t is in the ball
+//! about x - R y of that radius. So a restraint is a union of balls of the grid, and a given number of restraints have to
+//! hold at a voxel. Peaks are searched among those voxels alone: all poses that a run keeps can satisfy the restraints.
 //!
-//! # How wide a ball is
+//! # Radius of a ball
 //!
 //! - Sets of atoms are split into clumps of at most 4 Å about their middles, whose radii add to the ball's.
 //! - The effective distance of n pairs is up to n^(1/6) times below the shortest. 64 pairs are allowed for: of larger
 //!   sets only those in contact are near.
-//! - A pose may lie between the samples: half a voxel's diagonal from a translation, and at half of the covering
+//! - A pose may be between the samples: half a voxel's diagonal from a translation, and at half of the covering
 //!   radius from a rotation, which moves an atom by that angle times its distance from the ligand's centre. This is
-//!   about the middle of what is possible; poses beyond it are found from the next sample.
+//!   about the middle of the possible range; poses beyond it are found from the next sample.
 //!
-//! Lower bounds are left to the pose term. A membrane leaves out a slab of translations likewise ([`slab`]).
+//! Lower bounds are left to the pose term. A membrane excludes a slab of translations ([`slab`]).
 
 mod balls;
 mod lanes;
@@ -31,9 +30,9 @@ use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use slab::Slab;
 
-/// What is known of the translations of a docking.
+/// Restraints on the translations of a docking.
 #[derive(Clone, Copy)]
-pub struct Known<'a> {
+pub struct SearchRestraints<'a> {
     /// Restraints on distances between the knots.
     pub restraints: &'a DistanceRestraints,
     /// A membrane that one side stays out of.
@@ -47,20 +46,20 @@ pub struct Known<'a> {
 pub(crate) struct Allowed {
     /// The balls of each restraint, restraints of one ball first.
     restraints: Vec<Vec<Ball>>,
-    /// How many restraints have to hold.
+    /// Number of restraints that have to hold.
     needed: usize,
     membrane: Option<slab::Membrane>,
 }
 
 impl Allowed {
-    /// What is known, for a plan's grid and rotations that leave `step` radians between a pose and the nearest of
-    /// them. `None` where nothing is.
-    pub fn new(known: Known, plan: &Plan, step: f64) -> Option<Self> {
-        let Known {
+    /// The restraints for a plan's grid and rotations that leave `step` radians between a pose and the nearest of them;
+    /// `None` without any.
+    pub fn new(restraints: SearchRestraints, plan: &Plan, step: f64) -> Option<Self> {
+        let SearchRestraints {
             restraints,
             membrane,
             knots,
-        } = known;
+        } = restraints;
         if restraints.list.is_empty() && membrane.is_none() {
             return None;
         }
@@ -127,7 +126,7 @@ impl Regions<'_> {
     }
 }
 
-/// How voxels of a periodic grid lie in space: their indices in the order of their coordinates.
+/// Coordinates of the voxels of a periodic grid: their indices in the order of their coordinates.
 struct Axes {
     counts: [usize; 3],
     /// Index of the voxel with the lowest coordinate on each axis.

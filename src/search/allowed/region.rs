@@ -19,21 +19,21 @@ pub(crate) struct Region {
     counts: [usize; 3],
     /// Index of the voxel with the lowest coordinate on each axis.
     firsts: [usize; 3],
-    /// How many restraints have to hold.
+    /// Number of restraints that have to hold.
     needed: usize,
     balls: Balls,
     /// Voxels that a membrane takes out.
     slab: Option<Slab>,
     /// Whether each cell may hold an allowed voxel, row-major.
     open: Vec<bool>,
-    /// Of each row, by its indices: whether it still holds what is not allowed.
+    /// Whether each row, by its index, may still hold voxels that are not allowed.
     unchecked: Vec<bool>,
-    /// Squares of what the balls leave of their radii along a row.
+    /// Squares of the remaining radii of the balls along a row.
     left: Vec<f32>,
 }
 
 impl Region {
-    /// Begins a grid of so many voxels.
+    /// Begins a grid of `counts` voxels.
     pub fn begin(&mut self, counts: [usize; 3], firsts: [usize; 3], needed: usize) {
         (self.counts, self.firsts, self.needed) = (counts, firsts, needed);
         self.balls.clear();

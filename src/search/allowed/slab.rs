@@ -1,7 +1,7 @@
 //! A membrane as a slab of translations that are not allowed.
 //!
-//! At a rotation R the other side lies above or below the membrane where the translation along the membrane's normal is
-//! beyond one of two bounds, which its outermost atoms set. Bounds are wider by what the samples leave open, as those of
+//! At a rotation R the other side is above or below the membrane if the translation along the membrane's normal is
+//! beyond one of two bounds, which its outermost atoms set. Bounds are wider by the steps between samples, as those of
 //! balls are.
 
 use knotdock_scoring::terms::pose;
@@ -17,7 +17,7 @@ pub(super) struct Membrane {
     membrane: pose::Membrane,
     /// Atoms of the other side relative to its centre, Å.
     atoms: Vec<Vector3<f64>>,
-    /// What the samples leave open, Å.
+    /// Allowance for the steps between samples, Å.
     slack: f64,
 }
 

@@ -36,7 +36,7 @@ fn compare(
         Precision::Single,
     );
     let engine = CpuEngine::new(Arc::clone(&plan), &spectra, &ligand, 1);
-    let known = Known {
+    let known = SearchRestraints {
         restraints,
         membrane,
         knots: [&receptor, &ligand],

@@ -2,8 +2,8 @@
 //!
 //! By simulated annealing (Kirkpatrick, Gelatt & Vecchi, Science 220 (1983) 671-680) with numbers that are the same in
 //! every run, and sweeps after it. In a sweep each site in turn takes the state that is best beside the others', until
-//! nothing changes. Sweeps alone from the first states are the other way; the better of the two is the answer, so it
-//! never ends above where it began.
+//! nothing changes. The result is the better of this and of sweeps alone from the first states, so its energy is never
+//! above the first.
 
 use super::{Problem, SiteTable, TIE, site_tables};
 

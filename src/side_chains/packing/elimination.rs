@@ -22,7 +22,7 @@ struct Eliminated {
     best: Vec<u32>,
 }
 
-/// The best states of a component's sites in their order; `None` where a table would need more than `limit` entries.
+/// The best states of a component's sites in their order; `None` if a table would need more than `limit` entries.
 pub(super) fn best(problem: &Problem, sites: &[usize], limit: usize) -> Option<Vec<usize>> {
     let counts: Vec<usize> = sites.iter().map(|&site| problem.own[site].len()).collect();
     let mut tables = tables(problem, sites);
@@ -30,15 +30,12 @@ pub(super) fn best(problem: &Problem, sites: &[usize], limit: usize) -> Option<V
     let mut eliminated = Vec::with_capacity(sites.len());
     while !left.is_empty() {
         let size = |site: usize| {
-            let others = neighbours(&tables, site).into_iter();
-            others.fold(counts[site], |size, other| {
-                size.saturating_mul(counts[other])
-            })
+            let others = neighbours(&tables, site)
+                .into_iter()
+                .map(|other| counts[other]);
+            others.fold(counts[site], usize::saturating_mul)
         };
-        let next = left
-            .iter()
-            .copied()
-            .min_by_key(|&site| (size(site), site))?;
+        let next = *left.iter().min_by_key(|&&site| (size(site), site))?;
         if size(next) > limit {
             return None;
         }
@@ -102,40 +99,27 @@ fn eliminate(
     counts: &[usize],
 ) -> (Table, Vec<u32>) {
     let combinations: usize = neighbours.iter().map(|&other| counts[other]).product();
-    // Of each table, what a step of each neighbour's state and of the site's own moves its place by.
-    let strides: Vec<(Vec<usize>, usize)> = touching
-        .iter()
-        .map(|table| {
-            let stride = |wanted: usize| {
-                let at = table.sites.iter().position(|&one| one == wanted);
-                at.map_or(0, |at| {
-                    table.sites[at + 1..]
-                        .iter()
-                        .map(|&one| counts[one])
-                        .product()
-                })
-            };
-            (
-                neighbours.iter().map(|&other| stride(other)).collect(),
-                stride(site),
-            )
-        })
-        .collect();
+    // Strides of each table: of each neighbour's state, and of the site's own.
+    let strides = touching.iter().map(|table| {
+        let stride = |site: &usize| -> usize {
+            let at = table.sites.iter().position(|one| one == site);
+            let inner = at.map(|at| table.sites[at + 1..].iter().map(|&one| counts[one]));
+            inner.map_or(0, Iterator::product)
+        };
+        (neighbours.iter().map(stride).collect(), stride(&site))
+    });
+    let strides: Vec<(Vec<usize>, usize)> = strides.collect();
     let mut states = vec![0; neighbours.len()];
-    let (mut energies, mut best) = (Vec::new(), Vec::new());
-    energies.reserve(combinations);
-    best.reserve(combinations);
+    let mut energies = Vec::with_capacity(combinations);
+    let mut best = Vec::with_capacity(combinations);
     for _ in 0..combinations {
         let mut least = (f64::INFINITY, 0);
         for state in 0..counts[site] {
-            let energy: f64 = touching
-                .iter()
-                .zip(&strides)
-                .map(|(table, (steps, own))| {
-                    let place = steps.iter().zip(&states).map(|(step, state)| step * state);
-                    table.energies[place.sum::<usize>() + own * state]
-                })
-                .sum();
+            let terms = touching.iter().zip(&strides).map(|(table, (steps, own))| {
+                let place = steps.iter().zip(&states).map(|(step, state)| step * state);
+                table.energies[place.sum::<usize>() + own * state]
+            });
+            let energy: f64 = terms.sum();
             if energy < least.0 - TIE {
                 least = (energy, state);
             }

@@ -40,9 +40,9 @@ pub(crate) struct Pair {
 pub(crate) struct Solution {
     /// The states.
     pub states: Vec<usize>,
-    /// Components that were solved exactly, and those that were improved only.
+    /// Components that were solved exactly.
     pub exact: usize,
-    /// See `exact`.
+    /// Components that were improved only.
     pub improved: usize,
 }
 
@@ -89,9 +89,9 @@ impl Problem {
         let pairs = self.pairs.iter().map(|pair| {
             let [a, b] = pair.sites;
             let row = self.own[b].len();
-            let energies = alive[a].iter().flat_map(|&first| {
-                let second = alive[b].iter();
-                second.map(move |&second| pair.energies[first * row + second])
+            let energies = alive[a].iter().flat_map(|first| {
+                let row = &pair.energies[first * row..];
+                alive[b].iter().map(move |&second| row[second])
             });
             Pair {
                 sites: pair.sites,
@@ -123,10 +123,8 @@ impl Problem {
         for site in 0..root.len() {
             members[find(&root, site)].push(site);
         }
+        members.retain(|sites| !sites.is_empty());
         members
-            .into_iter()
-            .filter(|sites| !sites.is_empty())
-            .collect()
     }
 }
 
