@@ -37,6 +37,7 @@ impl Ball {
     }
 
     /// Lowest and highest corner of its bounding box.
+    #[cfg(feature = "mesh")]
     pub(crate) fn corners(&self) -> [[f64; 3]; 2] {
         [-self.radius, self.radius].map(|reach| self.center.map(|x| x + reach))
     }

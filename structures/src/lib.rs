@@ -49,7 +49,7 @@ pub mod knots;
 pub mod mesh;
 #[cfg(feature = "molecule")]
 pub mod molecule;
-#[cfg_attr(not(feature = "mesh"), allow(dead_code))]
+#[cfg_attr(not(all(feature = "mesh", feature = "molecule")), allow(dead_code))]
 mod motion;
 pub mod neighbours;
 pub mod numeric;

@@ -39,7 +39,6 @@ impl Motion {
     }
 
     /// `first`, then this motion.
-    #[cfg(feature = "molecule")]
     pub(crate) fn after(&self, first: &Self) -> Self {
         let [x, y, z] = [0, 1, 2].map(|axis| first.rows.map(|row| row[axis]));
         Self {

@@ -3,29 +3,35 @@
 use std::cmp::Ordering;
 
 /// a + b.
+#[inline]
 pub(crate) fn add(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
 /// a - b.
+#[inline]
 pub(crate) fn subtract(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [a[0] - b[0], a[1] - b[1], a[2] - b[2]]
 }
 
 /// s a.
+#[inline]
 pub(crate) fn scale(a: [f64; 3], s: f64) -> [f64; 3] {
     [s * a[0], s * a[1], s * a[2]]
 }
 
 /// a + s b.
+#[inline]
 pub(crate) fn along(a: [f64; 3], s: f64, b: [f64; 3]) -> [f64; 3] {
     add(a, scale(b, s))
 }
 
+#[inline]
 pub(crate) fn dot(a: [f64; 3], b: [f64; 3]) -> f64 {
     a[0] * b[0] + a[1] * b[1] + a[2] * b[2]
 }
 
+#[inline]
 pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     [
         a[1] * b[2] - a[2] * b[1],
@@ -34,14 +40,17 @@ pub(crate) fn cross(a: [f64; 3], b: [f64; 3]) -> [f64; 3] {
     ]
 }
 
+#[inline]
 pub(crate) fn norm(a: [f64; 3]) -> f64 {
     dot(a, a).sqrt()
 }
 
+#[inline]
 pub(crate) fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     norm(subtract(a, b))
 }
 
+#[inline]
 pub(crate) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     let away = subtract(a, b);
     dot(away, away)

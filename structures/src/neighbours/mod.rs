@@ -14,4 +14,5 @@ mod spatial_hash;
 
 pub use cell_list::{Bins, CellList, Member};
 pub use spatial_hash::SpatialHash;
+#[cfg_attr(not(feature = "mesh"), allow(unused_imports))]
 pub(crate) use spatial_hash::{Cell, around, cell_of};
