@@ -119,7 +119,7 @@ impl<'a> Docking<'a> {
     }
 }
 
-/// A docking run: ranked poses, and what they cost.
+/// A docking run: ranked poses and their cost.
 pub struct Run {
     molecules: [Molecule; 2],
     options: DockOptions,

@@ -1,6 +1,6 @@
 //! Errors of the libraries below, as [`Error`] with a remedy.
 
-use crate::progress::Ended;
+use crate::progress::Interruption;
 use knotdock_scoring::engine::PlanError;
 use knotdock_structures::Error;
 
@@ -21,11 +21,13 @@ pub(crate) fn unplanned(error: PlanError) -> Error {
     })
 }
 
-impl From<Ended> for Error {
-    fn from(ended: Ended) -> Self {
+impl From<Interruption> for Error {
+    fn from(ended: Interruption) -> Self {
         Self::lasting(ended).help(match ended {
-            Ended::Interrupted => "start it again",
-            Ended::TimeLimit(_) => "allow more with --time-limit, or search fewer --rotations",
+            Interruption::Interrupted => "start it again",
+            Interruption::TimeLimit(_) => {
+                "allow more with --time-limit, or search fewer --rotations"
+            }
         })
     }
 }

@@ -10,14 +10,14 @@ pub trait Progress: Sync {
     ///
     /// # Errors
     /// The reason for the end.
-    fn go_on(&self) -> Result<(), Ended> {
+    fn go_on(&self) -> Result<(), Interruption> {
         Ok(())
     }
 }
 
 /// The reason why a run ended early.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
-pub enum Ended {
+pub enum Interruption {
     /// Its user stopped it.
     #[error("the run was interrupted")]
     Interrupted,

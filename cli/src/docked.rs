@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 
 use crate::docking::Docking;
 use crate::inputs::native::measure;
-use crate::inputs::request::Known;
+use crate::inputs::request::KnownComplex;
 use crate::messages::console::Console;
 use crate::messages::dock::{
     cost_text, error_warning, next_text, outcome_text, restraints_warning, timings_text,
@@ -149,7 +149,7 @@ impl Docked {
             outcome,
             further: &self.quality,
             contacts: contacts.as_ref(),
-            matching: known.as_ref().map(Known::entry).transpose()?,
+            matching: known.as_ref().map(KnownComplex::entry).transpose()?,
             chosen: docking.chosen.as_ref(),
             clock: &docking.clock,
         }

@@ -4,7 +4,7 @@ use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 use crate::records::recorded_run::RecordedRun;
-use crate::tradeoff::choice::{Wanted, choose};
+use crate::tradeoff::choice::{RunTarget, choose};
 use knotdock::dock::pair::{PreparedPair, Preparer};
 use knotdock::options::{Precision, SharpChoice};
 use knotdock::output::files::staging::put_back;
@@ -12,7 +12,7 @@ use knotdock::output::records::manifest::Chosen;
 use knotdock::output::run_folder::Clock;
 
 use crate::inputs::native::NativeFiles;
-use crate::inputs::request::{Known, Request};
+use crate::inputs::request::{KnownComplex, Request};
 use crate::messages::console::Console;
 use crate::messages::dock::{assumed, regions_text};
 use crate::messages::dock::{expected_text, score_text};
@@ -26,7 +26,7 @@ pub struct Docking {
     pub(super) shown: PathBuf,
     /// Whether another run there is replaced.
     pub(super) force: bool,
-    pub(super) known: Option<Known>,
+    pub(super) known: Option<KnownComplex>,
     pub(super) prepared: PreparedPair,
     pub(super) chosen: Option<Chosen>,
     /// Where the run has a budget.
@@ -38,7 +38,7 @@ impl Docking {
     /// Plans the requested run. It is written into `directory`, and replaces a run there only if `force` is true.
     pub fn prepare(
         mut request: Request,
-        wanted: Wanted,
+        wanted: RunTarget,
         (directory, force): (PathBuf, bool),
         clock: Clock,
         console: Console,
@@ -49,7 +49,7 @@ impl Docking {
         }
         request.bodies.describe(arrangement, console);
         let known = request.known(console)?;
-        let (prepared, chosen, deadline) = if wanted == Wanted::default() {
+        let (prepared, chosen, deadline) = if wanted == RunTarget::default() {
             (request.plan(console)?, None, None)
         } else {
             let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
@@ -119,7 +119,7 @@ impl Docking {
         let native = self.request.native.as_ref().map(NativeFiles::record);
         let mut options = self.request.options.clone();
         if self.deadline.is_some() {
-            // Where that run stopped is what this one's time would say.
+            // This run would stop where its own time ends.
             options.stopped = run.options.stopped;
         }
         let inputs = self.request.bodies.records();
@@ -138,9 +138,9 @@ pub fn held_by_another(directory: &Path, force: &str) -> Error {
     .help(format!("pass {force} to replace it, or choose another directory with -o"))
 }
 
-/// Plans by what is wanted of accuracy and time, and fills the choice into the request's options.
+/// Plans by the accuracy and time wanted, and fills the choice into the request's options.
 fn plan_within(
-    wanted: Wanted,
+    wanted: RunTarget,
     request: &mut Request,
     console: Console,
 ) -> Result<(PreparedPair, Chosen), Error> {

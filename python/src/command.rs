@@ -16,7 +16,7 @@ use pyo3::types::PyList;
 use crate::failure::{exception, fault};
 use knotdock::output::files::added::add_files;
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
-use knotdock::progress::{Ended, Progress};
+use knotdock::progress::{Interruption, Progress};
 use knotdock_cli::Listener;
 use knotdock_structures::Error;
 
@@ -99,9 +99,9 @@ impl Progress for Events {
         }
     }
 
-    fn go_on(&self) -> Result<(), Ended> {
+    fn go_on(&self) -> Result<(), Interruption> {
         match self.is_stopped.load(Ordering::Relaxed) {
-            true => Err(Ended::Interrupted),
+            true => Err(Interruption::Interrupted),
             false => Ok(()),
         }
     }

@@ -32,7 +32,7 @@ pub(super) fn components_by_effect(
     components
 }
 
-/// The costs of all effects, of a search of so many rotations whose stages took these times.
+/// The costs of all effects, of a search of this number of rotations whose stages took these times.
 pub(super) fn effect_costs(
     plan: &DockPlan,
     components: &[f64; Effect::ALL.len()],

@@ -10,7 +10,7 @@ use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::terms::effect::Effect;
 use serde::Serialize;
 
-/// The fast path's error as measured in this run, relative to the best exact score; infinite where no pose scores
+/// The fast path's error as measured in this run, relative to the best exact score; infinite if no pose scores
 /// anything.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct MeasuredError {
@@ -108,9 +108,9 @@ pub struct StageTime {
 /// What the sharp stage saw.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct SharpOutcome {
-    /// Whether an exact fit stands out, and so what the run is ranked by.
+    /// Whether an exact fit is far ahead, by which the run is then ranked.
     pub finding: SharpFinding,
-    /// The best place against the others; `None` where there are too few places.
+    /// The best place against the others; `None` if there are too few places.
     pub evidence: Option<Evidence>,
     /// Standard deviations that the best place lies below the others.
     pub margin: Option<f64>,
@@ -121,7 +121,7 @@ pub struct SharpOutcome {
 /// All that a docking run found.
 #[derive(Clone, Debug)]
 pub struct DockOutcome {
-    /// Rows of the ranking, best first: one a cluster, or every pose where the options ask for it.
+    /// Rows of the ranking, best first: one per cluster, or every pose if the options ask for it.
     pub poses: Vec<RankedPose>,
     /// Poses kept before clustering.
     pub poses_kept: usize,
@@ -139,13 +139,13 @@ pub struct DockOutcome {
     pub rank_error: f64,
     /// Cost of each term.
     pub effects: Vec<EffectCost>,
-    /// What the sharp stage saw; `None` where it was off.
+    /// Findings of the sharp stage; `None` if it was off.
     pub sharp: Option<SharpOutcome>,
-    /// Coverage of a finer search about the best rotations, where one was requested.
+    /// Coverage of a finer search about the best rotations, if one was requested.
     pub fine: Option<FineSearched>,
     /// Time by stage.
     pub timing: Vec<StageTime>,
-    /// The graphics processor that correlated, where one did.
+    /// The graphics processor that correlated, if one did.
     pub adapter: Option<Adapter>,
 }
 

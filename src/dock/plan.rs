@@ -83,7 +83,7 @@ pub struct DockPlan {
     /// Settings of the search.
     #[serde(skip)]
     pub search: SearchPlan,
-    /// The parts of atoms in hydrogen bonds, where sharp fits are looked for.
+    /// The parts of atoms in hydrogen bonds, if sharp fits are looked for.
     #[serde(skip)]
     pub(crate) polar: Option<[Vec<PolarAtom>; 2]>,
     #[serde(skip)]
@@ -169,7 +169,7 @@ impl DockPlan {
         self.polar.is_some()
     }
 
-    /// What the sharp stage reads; `None` where it is off.
+    /// The inputs of the sharp stage; `None` if it is off.
     pub(crate) fn sharp_inputs(&self) -> Option<SharpInputs<'_>> {
         let polar = self.polar.as_ref()?;
         Some(SharpInputs {
@@ -188,7 +188,7 @@ impl DockPlan {
         [&self.receptor, &self.ligand].map(|knots| self.search.engine.unresolved(knots).len())
     }
 
-    /// The exact sum of what is ranked.
+    /// The exact sum that ranks.
     ///
     /// # Errors
     /// [`Error`] on knots that cannot be summed.
@@ -197,7 +197,7 @@ impl DockPlan {
         Ok(ExactSum::of(engine, &self.receptor, &self.ligand)?)
     }
 
-    /// Number of poses to refine: all where none lies on the grid, as of rings.
+    /// Number of poses to refine: all if none is on the grid, as of rings.
     pub fn refined(&self) -> usize {
         refined(&self.search.space, &self.decisions, &self.options)
     }
@@ -207,7 +207,7 @@ impl DockPlan {
         self.rescoring().rescorer()
     }
 
-    /// The active site that the partner of a peptidase is assumed to bind, where one is.
+    /// The active site that the partner of a peptidase is assumed to bind, if any.
     pub fn active_site(&self) -> Option<&AssumedSite> {
         self.active.assumed.as_ref()
     }
@@ -229,7 +229,7 @@ impl DockPlan {
         self.decisions.iter().any(|d| d.effect == effect && d.on)
     }
 
-    /// Seconds on the clock of the search of so many rotations, an order of size: as timed on the threads of an idle
+    /// Seconds on the clock of the search of this number of rotations, an order of size: as timed on the threads of an idle
     /// two-core Intel Xeon at 2.50 GHz. A run with a deadline measures its own.
     pub fn search_seconds(&self, rotations: usize) -> f64 {
         let points = self.grid.iter().product::<usize>() as f64;
@@ -254,7 +254,7 @@ impl DockPlan {
     }
 }
 
-/// Number of poses to refine: all where none lies on the grid, as of rings.
+/// Number of poses to refine: all if none is on the grid, as of rings.
 fn refined(space: &PoseSpace, decisions: &[Decision], options: &DockOptions) -> usize {
     if !space.is_on_grid() {
         return options.search.poses;

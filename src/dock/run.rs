@@ -59,8 +59,8 @@ pub fn dock(
 
 /// Docks as planned, with as many of the rotations as there is time for if the run must end at `deadline`.
 ///
-/// The search stops when the time left is what the rest of the run takes, by what poses and rotations were measured to
-/// take. [`DockOutcome::stopped`] says how many rotations that were. A run planned with it as [`DockOptions::stopped`] and docked
+/// The search stops when the time left is that of the rest of the run, by the time that poses and rotations were measured
+/// to take. [`DockOutcome::stopped`] says how many rotations that were. A run planned with it as [`DockOptions::stopped`] and docked
 /// without a deadline has the same outcome. Graphics processors search all rotations.
 ///
 /// [`DockOptions::stopped`]: crate::options::DockOptions::stopped
@@ -190,7 +190,7 @@ fn dock_on_threads(
 
 /// Prepared engine, spectra and scorer of a run.
 struct Prepared {
-    /// The receptor's spectra, where poses are refined.
+    /// The receptor's spectra, if poses are refined.
     spectra: Option<ReceptorSpectra>,
     engine: ScanEngine,
     scorer: ExactSum,
@@ -235,7 +235,7 @@ impl Prepared {
 }
 
 /// Peaks of a search, with its coverage and errors.
-struct Found {
+struct SearchResult {
     /// The best peaks, best first.
     peaks: Vec<Peak>,
     /// Rotations of the set that were searched.
@@ -244,7 +244,7 @@ struct Found {
     fine: Option<FineSearched>,
 }
 
-impl Found {
+impl SearchResult {
     /// Where the run stopped before its end, if it did: `kept` poses are carried on.
     fn stopped(&self, plan: &DockPlan, kept: usize) -> Option<Stopped> {
         (self.searched < plan.rotations || kept < self.peaks.len()).then_some(Stopped {
@@ -254,7 +254,7 @@ impl Found {
     }
 }
 
-/// Rotations that are searched to see what their poses take after the search.
+/// Rotations searched to measure the time of their poses after the search.
 const PROBED: usize = 4;
 /// Share of the poses that are exactly scored, as centres of clusters, in runs of the example pair and of 1AHW.
 const SCORED: f64 = 0.5;
@@ -311,7 +311,7 @@ fn find(
     engine: &ScanEngine,
     deadline: Option<&Deadline>,
     (progress, clock): (&dyn Progress, &mut Stopwatch),
-) -> Result<Found, Error> {
+) -> Result<SearchResult, Error> {
     let search = &plan.search;
     let groups = schedule(search, deadline.is_some());
     let wanted: usize = groups.iter().map(RotationGroup::count).sum();
@@ -345,7 +345,7 @@ fn find(
         (peaks, fine) = (finer, Some(searched));
         clock.lap("fine");
     }
-    Ok(Found {
+    Ok(SearchResult {
         peaks,
         searched,
         fine,
@@ -475,7 +475,7 @@ fn rescore(
     candidates
 }
 
-/// Fits the best candidates at atomic resolution, and ranks by these fits where one stands out; `None` where sharp fits
+/// Fits the best candidates at atomic resolution, and ranks by these fits if one is far ahead; `None` if sharp fits
 /// are off.
 fn sharpen(
     plan: &DockPlan,
@@ -497,7 +497,7 @@ fn sharpen(
     })
 }
 
-/// Points of a molecule whose RMSD makes clusters, in Å: CA atoms, or all where fewer than three residues have one.
+/// Points of a molecule whose RMSD makes clusters, in Å: CA atoms, or all if fewer than three residues have one.
 pub fn molecule_points(ligand: &Molecule) -> Vec<[f64; 3]> {
     let alphas: Vec<[f64; 3]> = ligand
         .atoms

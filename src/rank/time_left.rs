@@ -16,7 +16,7 @@ pub(crate) const FEWEST: usize = 100;
 /// Poses that are rescored to see how long one takes.
 const PROBES: usize = 48;
 
-/// The number of poses that are kept, best first, with so many seconds left. `scoring` is the seconds that the exact score
+/// The number of poses that are kept, best first, with these seconds left. `scoring` is the seconds that the exact score
 /// of one takes.
 pub(crate) fn poses_in_time(
     left: f64,

@@ -6,7 +6,7 @@ use std::time::Instant;
 /// the example pair.
 const FINE: f64 = 2.1;
 
-/// When a run must end, and what remains to be done after its search.
+/// The end of a run, and the work after its search.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Deadline {
     /// When the run must end.
@@ -22,7 +22,7 @@ pub(crate) struct Deadline {
 }
 
 impl Deadline {
-    /// Whether a search that began at `started` and has done so many rotations must stop.
+    /// Whether a search that began at `started` and has done this number of rotations must stop.
     pub fn is_reached(&self, started: Instant, done: usize) -> bool {
         self.must_stop(started.elapsed().as_secs_f64(), left(self.end), done)
     }

@@ -16,7 +16,7 @@ use crate::inputs::molecules::label;
 use crate::inputs::native::NativeArguments;
 use crate::inputs::request::Request;
 use crate::messages::console::Console;
-use crate::tradeoff::choice::Wanted;
+use crate::tradeoff::choice::RunTarget;
 use knotdock::dock::memory::process;
 use knotdock::options::values::{ABOVE_ZERO, duration, in_range};
 use knotdock::options::{DockOptions, EngineChoice, option_named};
@@ -252,7 +252,7 @@ impl Dock {
         clock: Clock,
         console: Console,
     ) -> Result<Prepared, Error> {
-        let wanted = Wanted {
+        let wanted = RunTarget {
             accuracy: self.accuracy,
             budget: self.budget,
         };
@@ -303,8 +303,8 @@ fn named_after(sides: &[Vec<Conformation>; 2]) -> PathBuf {
 }
 
 /// Refuses options for which nothing can be chosen by an error or a time.
-fn check_wanted(wanted: Wanted, options: &DockOptions) -> Result<(), Error> {
-    if wanted == Wanted::default() {
+fn check_wanted(wanted: RunTarget, options: &DockOptions) -> Result<(), Error> {
+    if wanted == RunTarget::default() {
         return Ok(());
     }
     if options.search.engine == EngineChoice::Gpu {

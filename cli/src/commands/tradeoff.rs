@@ -9,7 +9,7 @@ use crate::arguments::machine::settled;
 use crate::arguments::options::{GivenOptions, OfTradeoff, OptionArguments};
 use crate::inputs::bodies::Bodies;
 use crate::inputs::native::NativeArguments;
-use crate::inputs::request::{Known, Request};
+use crate::inputs::request::{KnownComplex, Request};
 use crate::messages::console::Console;
 use crate::records::joined;
 use crate::records::tradeoff::{SCHEMA, settings, write_table};
@@ -100,7 +100,7 @@ impl TradeoffCommand {
             first,
             &request.options,
             &parameters,
-            known.as_ref().and_then(Known::evaluator),
+            known.as_ref().and_then(KnownComplex::evaluator),
             console,
         )?;
 
@@ -124,7 +124,7 @@ impl TradeoffCommand {
                 "refused": tradeoff.refused,
                 "advice": advice,
                 "files": staging.checksums()?,
-                "match": known.as_ref().map(Known::entry).transpose()?,
+                "match": known.as_ref().map(KnownComplex::entry).transpose()?,
                 "machine": machine,
             }),
         ]);

@@ -17,7 +17,7 @@ use crate::messages::dock::time_text;
 use crate::records::ENSEMBLE_RECORD;
 use crate::tables::batch_results::RunSummary;
 use crate::tables::report::counted;
-use crate::tradeoff::choice::Wanted;
+use crate::tradeoff::choice::RunTarget;
 use knotdock::ensemble::table::{DockedMember, joint};
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::{ENSEMBLE, MEMBERS, is_run};
@@ -39,7 +39,7 @@ pub struct Ensemble {
 pub struct EnsembleRequest {
     pub given: GivenOptions,
     pub native: Option<NativeFiles>,
-    pub wanted: Wanted,
+    pub wanted: RunTarget,
     pub directory: PathBuf,
     pub force: bool,
 }

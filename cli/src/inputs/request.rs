@@ -41,14 +41,14 @@ impl From<&GivenOptions> for GivenMeshOptions {
 }
 
 /// The known complex, as far as it matches the molecules docked.
-pub enum Known {
+pub enum KnownComplex {
     /// Poses can be measured.
     Matched(Evaluator),
     /// They cannot, for this reason.
     Unmatched(String),
 }
 
-impl Known {
+impl KnownComplex {
     /// What measures poses, if they can be measured.
     pub fn evaluator(&self) -> Option<&Evaluator> {
         match self {
@@ -139,17 +139,17 @@ impl Request {
     }
 
     /// Matches the known complex, if there is one; a mismatch is a warning.
-    pub fn known(&self, console: Console) -> Result<Option<Known>, Error> {
+    pub fn known(&self, console: Console) -> Result<Option<KnownComplex>, Error> {
         match (&self.native, &self.bodies) {
             (Some(native), Bodies::Molecules(inputs)) => {
                 let pair = inputs.each_ref().map(|input| &input.molecule);
-                let matched = native.matched(pair, console).map(Known::Matched);
+                let matched = native.matched(pair, console).map(KnownComplex::Matched);
                 Ok(Some(matched.unwrap_or_else(|failure| {
                     console.warn(format!(
                         "no pose is measured: {}; `knotdock evaluate` measures the run by another known complex",
                         failure.in_one_line()
                     ));
-                    Known::Unmatched(failure.message().to_owned())
+                    KnownComplex::Unmatched(failure.message().to_owned())
                 })))
             }
             (Some(_), Bodies::Meshes(_)) => Err(Error::input(

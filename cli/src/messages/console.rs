@@ -19,7 +19,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
 use crate::messages::shown::{shown, shown_json, shown_name};
-use knotdock::progress::{Ended, Progress};
+use knotdock::progress::{Interruption, Progress};
 use knotdock_structures::Error;
 
 /// The first error on writing the report.
@@ -269,7 +269,7 @@ impl Progress for ProgressLine<'_> {
         }
     }
 
-    fn go_on(&self) -> Result<(), Ended> {
+    fn go_on(&self) -> Result<(), Interruption> {
         self.listener.map_or(Ok(()), |listener| listener.go_on())
     }
 }

@@ -14,7 +14,7 @@ const FASTEST: f64 = 4.0;
 
 /// Accuracy and time that a run is to keep to.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Wanted {
+pub struct RunTarget {
     /// Error of the fast path, rms over the best grid poses, as a share of the best score.
     pub accuracy: Option<f64>,
     /// Seconds on the clock.
@@ -26,7 +26,7 @@ pub struct Wanted {
 /// # Errors
 /// [`Error`].
 pub fn choose(
-    wanted: Wanted,
+    wanted: RunTarget,
     options: &mut DockOptions,
     preparer: &mut Preparer,
 ) -> Result<Chosen, Error> {
@@ -105,7 +105,7 @@ impl Rung {
         }
     }
 
-    /// The cheapest setting whose error is at most `accuracy`; `None` below what is known of any.
+    /// The cheapest setting whose error is at most `accuracy`; `None` below that of any.
     fn within(accuracy: f64) -> Option<Self> {
         LADDER.into_iter().find(|rung| rung.error <= accuracy)
     }

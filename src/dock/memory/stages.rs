@@ -1,7 +1,6 @@
 //! Memory of a run by stage: one formula each, of the sizes of what the stage makes, so that the plan follows the code.
 //!
-//! A stage begins with what the process held when the run was planned: the program, the inputs and what was made of
-//! them.
+//! A stage begins with the memory of the process when the run was planned: the program, the inputs and all made of them.
 
 use crate::dock::memory::process;
 use crate::dock::scene::{LengthUnit, Scene};
@@ -22,9 +21,9 @@ use nalgebra::UnitQuaternion;
 /// tolerances from 1e-2 to 1e-6.
 pub(super) const EXPECTED_RANK: usize = 10;
 
-/// Bytes that the process takes before it reads anything, where the system does not say.
+/// Bytes that the process takes before it reads anything, if the system does not say.
 const PROGRAM: u64 = 16 << 20;
-/// Bytes of an atom as read, where the system does not say.
+/// Bytes of an atom as read, if the system does not say.
 const ATOM_READ: u64 = 1 << 10;
 /// Bytes of the program's code and tables that are first used after planning.
 const CODE: u64 = 3 << 20;
@@ -45,10 +44,10 @@ const RANKED: u64 = (size_of::<Candidate>()
     + (size_of::<RankedPose>() + size_of::<usize>()) * 3 / 2) as u64;
 /// Bytes of a thread: its stack, and buffers that its allocator keeps.
 const THREAD: u64 = 1 << 20;
-/// One part in so many of a stage's memory is lost between buffers: measured, 6% to 19% of what is alive on one thread.
+/// One part of this many of a stage's memory is lost between buffers: 6% to 19% as measured on one thread.
 const ALLOCATOR: u64 = 6;
 
-/// Sizes that decide what a run takes. All but `held` and `read` follow from the inputs and options.
+/// Sizes that decide the memory of a run. All but `held` and `read` follow from the inputs and options.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Sizes {
     /// What the process holds when the run is planned.
@@ -123,7 +122,7 @@ impl Sizes {
         self.in_flight(self.rank)
     }
 
-    /// Bytes of the largest stage without rotations in flight, and without what was held before.
+    /// Bytes of the largest stage without rotations in flight, and without those held before.
     pub fn fixed(&self) -> u64 {
         largest(self.stages(0)).1.saturating_sub(self.held)
     }
@@ -138,12 +137,12 @@ impl Sizes {
         largest([("read", self.read), largest(self.stages(rotations))])
     }
 
-    /// Bytes of the search with so many rotations in flight, at a rank that is known.
+    /// Bytes of the search with this number of rotations in flight, at a known rank.
     pub fn search_peak(&self, rotations: usize, rank: usize) -> u64 {
         self.whole(self.search(rotations as u64, rank))
     }
 
-    /// A stage with so many bytes of its own, beside what was held before it.
+    /// Bytes of a stage with its own and those held before it.
     fn whole(&self, own: u64) -> u64 {
         let rotations =
             size_of::<UnitQuaternion<f64>>() as u64 * self.rotations.iter().sum::<u64>();
@@ -159,7 +158,7 @@ impl Sizes {
         let engine = &self.engine;
         let whole = engine.choice(engine.without(None).rank);
         let transforms = rotations.max(1) * engine.transform;
-        // The finer search keeps all peaks, and what the first one found in cells.
+        // The finer search keeps all peaks, and those of the first one in cells.
         let peaks = 2 * (self.searched_finer + self.images) * self.per_rotation
             + 2 * self.scanned()
             + coarse * self.per_rotation;

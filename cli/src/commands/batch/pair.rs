@@ -17,7 +17,7 @@ use crate::shards::PosesOfPair;
 use crate::shards::record::Keep;
 use crate::tables::batch_results::RunSummary;
 use knotdock::options::values::duration;
-use knotdock::progress::{Ended, Progress};
+use knotdock::progress::{Interruption, Progress};
 use knotdock_structures::Error;
 
 /// Seconds before a pair is docked again.
@@ -61,12 +61,12 @@ impl Progress for PairTime<'_> {
 
     fn advance(&self, _: u64) {}
 
-    fn go_on(&self) -> Result<(), Ended> {
+    fn go_on(&self) -> Result<(), Interruption> {
         if let Some(outer) = self.outer {
             outer.go_on()?;
         }
         match self.limit {
-            Some((end, seconds)) if Instant::now() >= end => Err(Ended::TimeLimit(seconds)),
+            Some((end, seconds)) if Instant::now() >= end => Err(Interruption::TimeLimit(seconds)),
             _ => Ok(()),
         }
     }
