@@ -9,6 +9,7 @@
 set -euo pipefail
 shopt -s inherit_errexit
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. scripts/side_by_side.sh
 
 target=$(realpath -m "${CARGO_TARGET_DIR:-target}")
 venv=$target/python/package
@@ -53,14 +54,22 @@ fi
 root=$PWD tests=$PWD/python/tests package=$PWD/python/knotdock
 cd "$target/python"
 PATH=$venv/bin:$PATH
-pytest --quiet --rootdir "$tests" --config-file /dev/null -p no:cacheprovider "$tests"
-pytest --quiet --config-file /dev/null -p no:cacheprovider --doctest-modules --pyargs knotdock
-mypy --no-error-summary --ignore-missing-imports "$package"
-# The book: its commands are run, and its reference is what the program says.
-python "$root/scripts/checks/check_book.py" "$program"
-python "$root/scripts/book/write_reference.py" "$program" --check
-if [ -x "$(command -v slurmctld)" ] && [ "$(id -u)" = 0 ]; then
-    python "$tests/../../scripts/checks/check_cluster.py" "$(mktemp -d)"
-else
-    echo "No Slurm can be started here: the recipes for clusters are not checked."
-fi
+package_tests() {
+    pytest --quiet --rootdir "$tests" --config-file /dev/null -p no:cacheprovider "$tests"
+    pytest --quiet --config-file /dev/null -p no:cacheprovider --doctest-modules --pyargs knotdock
+    mypy --no-error-summary --ignore-missing-imports "$package"
+}
+# The commands of the book are run, and its reference must be that of the program.
+book() {
+    python "$root/scripts/checks/check_book.py" "$program"
+    python "$root/scripts/book/write_reference.py" "$program" --check
+}
+clusters() {
+    if [ -x "$(command -v slurmctld)" ] && [ "$(id -u)" = 0 ]; then
+        python "$tests/../../scripts/checks/check_cluster.py" "$(mktemp -d)"
+    else
+        echo "No Slurm can be started here: the recipes for clusters are not checked."
+    fi
+}
+# They wait for programs that they start.
+side_by_side package_tests book clusters

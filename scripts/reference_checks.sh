@@ -4,6 +4,7 @@
 set -euo pipefail
 shopt -s inherit_errexit
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
+. scripts/side_by_side.sh
 
 target=${CARGO_TARGET_DIR:-target}
 knotdock=$target/debug/knotdock
@@ -54,18 +55,5 @@ files() {
 # The full set, 1,000 poses of each pair of solids, goes without --poses.
 solids() { python scripts/checks/check_solids.py "$knotdock" structures/examples/bunny.obj --poses 100; }
 
-# They wait for each other's files and for the network, so all run at once; what each says comes in one piece.
-words=$(mktemp -d)
-trap 'rm -rf "$words"' EXIT
-groups=(poses shapes files solids)
-running=()
-for group in "${groups[@]}"; do
-    (set -e; "$group") >"$words/$group" 2>&1 &
-    running+=($!)
-done
-failed=0
-for number in "${!groups[@]}"; do
-    wait "${running[number]}" || failed=1
-    cat "$words/${groups[number]}"
-done
-exit "$failed"
+# They wait for files and for the network.
+side_by_side poses shapes files solids
