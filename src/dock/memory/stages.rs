@@ -42,6 +42,10 @@ const PEAK: u64 = size_of::<Peak>() as u64;
 const RANKED: u64 = (size_of::<Candidate>()
     + 10 * size_of::<usize>()
     + (size_of::<RankedPose>() + size_of::<usize>()) * 3 / 2) as u64;
+/// Bytes of a pose while it is rescored, of which sorting takes half again, and as a row with its quality.
+const RESCORED: u64 = PEAK + (size_of::<RefinedPose>() + size_of::<Candidate>() * 3 / 2) as u64;
+const WRITTEN: u64 = (size_of::<RankedPose>() + size_of::<(usize, Pose)>()) as u64 + 384;
+const _: () = assert!(RANKED >= RESCORED && RANKED >= WRITTEN);
 /// Bytes of a thread: its stack, and buffers that its allocator keeps.
 const THREAD: u64 = 1 << 20;
 /// One part of this many of a stage's memory is lost between buffers: 6% to 19% as measured on one thread.
