@@ -70,6 +70,12 @@ fn keeps_to_what_is_named(folder: &Path, scene: &Scene) {
             .strip_suffix('M')
             .map(|m| m.parse::<u64>().unwrap() * 1_000_000)
     );
+    // The limit named is the estimate of another process, with a megabyte and a half and 2% to spare at most.
+    let estimate = machine["memory_estimate_bytes"].as_u64().unwrap();
+    assert!(
+        estimate <= allowed && allowed as f64 <= 1.1 * estimate as f64 + 2e6,
+        "{name}: {estimate} of {allowed}"
+    );
     fs::remove_dir_all(folder.join(directory(scene))).unwrap();
     let Some(peak) = record["run"]["timing"]["peak_memory_bytes"].as_u64() else {
         println!("{name}: this system does not report the peak of a process");
