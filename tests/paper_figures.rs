@@ -4,9 +4,6 @@
 
 #[path = "../benches/paper_figures/crossing.rs"]
 mod crossing;
-#[path = "../benches/paper_figures/lifted.rs"]
-#[allow(dead_code)]
-mod lifted;
 #[path = "../benches/paper_figures/minkowski.rs"]
 mod minkowski;
 #[path = "../benches/paper_figures/scene.rs"]
@@ -17,7 +14,7 @@ use crate::docking_parts;
 use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::grid::Grid;
 use knotdock::geometry::gap::spectrum::{self, Body, FrequencyBox, Kernel, exact};
-use knotdock::geometry::gap::ways;
+use knotdock::geometry::gap::{lifted, ways};
 use knotdock_scoring::transform::truncation::{Selection, rms_left_out};
 use knotdock_scoring::truncated::RotationSpectrum;
 use knotdock_structures::mesh::{Mesh, from_triangles};

@@ -27,7 +27,6 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
-mod lifted;
 mod minkowski;
 mod report;
 mod scene;

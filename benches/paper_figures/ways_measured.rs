@@ -1,13 +1,14 @@
 //! A body's spectrum at its m' lowest frequencies: what each way takes, with no larger an error than the grid's.
 
 use crate::crossing::crossing;
-use crate::lifted;
 use crate::scene::Scene;
 use crate::timing::least;
 use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::grid::Grid;
+use knotdock::geometry::gap::lifted;
 use knotdock::geometry::gap::spectrum::{FrequencyBox, Kernel, exact};
 use knotdock::geometry::gap::ways::{Points, direct, fast, planned};
+use knotdock_scoring::transform::direct::forward as direct_sums;
 use num_complex::Complex64;
 use std::error::Error;
 
@@ -163,7 +164,7 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
 
 /// The direct sums: all of them, or the time of a share, with no error then.
 fn by_direct_sums(points: &Points, reference: &[Complex64], places: &[usize]) -> Measured {
-    let share = SHARE / lifted::direct_cost(points);
+    let share = SHARE / direct_cost(points);
     let planes = points.frequencies.half()[0];
     if share >= 1.0 {
         let values = direct(points);
@@ -174,10 +175,33 @@ fn by_direct_sums(points: &Points, reference: &[Complex64], places: &[usize]) ->
         };
     }
     let timed_planes = ((share * planes as f64) as usize).max(1);
-    let seconds = least(|| lifted::direct_share(points, timed_planes));
+    let seconds = least(|| direct_share(points, timed_planes));
     Measured {
         seconds: seconds * planes as f64 / timed_planes as f64,
         error: f64::NAN,
         scaled: timed_planes < planes,
     }
+}
+
+/// Multiplications of the direct sums: balls, frequencies held, functions.
+fn direct_cost(points: &Points) -> f64 {
+    points.centers.len() as f64
+        * (points.frequencies.count() / 2) as f64
+        * points.expansion.rank() as f64
+}
+
+/// A share of the direct sums: the frequencies of `planes` of the a values of kx, nothing of it kept. The work is the
+/// same for every kx, so that all take a / `planes` times its time. (Fewer values of kz would not do: the phases of x
+/// and y are multiplied once for all of them.)
+fn direct_share(points: &Points, planes: usize) -> f64 {
+    let [_, b, c] = points.frequencies.half();
+    let sums = direct_sums(&points.centers, &points.weights, [planes, b, c]);
+    let share = FrequencyBox {
+        size: [planes, b, 2 * c],
+    };
+    let mut output = vec![Complex64::default(); planes * b * c];
+    points
+        .expansion
+        .combine(share, &mut output, |place, f| sums[f][place]);
+    output[0].re
 }

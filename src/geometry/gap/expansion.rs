@@ -1,8 +1,8 @@
 //! The radius taken out of a ball's transform, so that sums over balls become sums of plain waves.
 //!
 //! r^3 psi^(r |w|) = sum_f A_f(|w|) B_f(r), with the fewest functions B_f of the radius that suffice, from a singular
-//! value decomposition. A is computed beforehand for every |w| of a box, as in the paper, and costs no time here. (The
-//! paper's own expansion, a Fourier series along the fourth axis, is in benches/paper_figures.)
+//! value decomposition. A is computed beforehand for every |w| of a box, as in the paper, and costs no time here. The
+//! paper's own expansion, a Fourier series along the fourth axis, is [`series`](super::lifted::series).
 
 use super::spectrum::{Body, FrequencyBox, Kernel, exact, phase, square};
 use nalgebra::DMatrix;
@@ -37,7 +37,7 @@ pub struct Task<'a> {
 }
 
 /// A candidate: its functions in the order in which they are taken in.
-pub struct Candidate {
+pub(super) struct Candidate {
     /// B_f, as [`Expansion::radial`].
     pub radial: Vec<Vec<Complex64>>,
     /// A_f at each frequency that is checked.
@@ -130,14 +130,14 @@ impl Expansion {
 }
 
 /// A function of |w| for every square that an integer frequency of the box can have.
-pub fn over_squares(task: &Task, at: impl Fn(f64) -> Vec<Complex64>) -> Vec<Complex64> {
+pub(super) fn over_squares(task: &Task, at: impl Fn(f64) -> Vec<Complex64>) -> Vec<Complex64> {
     (0..=task.frequencies.largest_square())
         .flat_map(|square| at((square as f64).sqrt() / task.edge))
         .collect()
 }
 
 /// The body's spectrum at some frequencies, and the phases of all balls there.
-pub struct SampledSpectrum {
+pub(super) struct SampledSpectrum {
     lengths: Vec<f64>,
     exact: Vec<Complex64>,
     phases: Vec<Vec<Complex64>>,

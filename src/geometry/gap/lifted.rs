@@ -1,16 +1,12 @@
 //! The paper's own way from balls to a spectrum: a Fourier series along the radius, so that the sum over balls is a
 //! four-dimensional transform of the points (x, y, z, r).
 
-use knotdock::geometry::gap::expansion::{
-    Candidate, Expansion, SampledSpectrum, Task, over_squares,
-};
-use knotdock::geometry::gap::spectrum::FrequencyBox;
-use knotdock::geometry::gap::ways::Points;
+use super::expansion::{Candidate, Expansion, SampledSpectrum, Task, over_squares};
+use super::ways::{Points, refused};
 use knotdock_scoring::kernel::smooth_step_down;
-use knotdock_scoring::transform::direct;
 use knotdock_scoring::transform::nufft::{Plan, SortedPoints, Workspace};
+use knotdock_structures::Error;
 use num_complex::Complex64;
-use std::error::Error;
 use std::f64::consts::PI;
 
 /// Lengths by which the series' period exceeds the range of radii, as shares of that range.
@@ -126,20 +122,15 @@ fn lifted(points: &Points, heights: &[f64]) -> Vec<[f64; 4]> {
 /// Plans [`fast`] for balls of these radii and a series of this period.
 ///
 /// # Errors
-/// If a tolerance or a grid is out of reach.
-pub fn planned(
-    points: &Points,
-    radii: &[f64],
-    period: f64,
-    tolerance: f64,
-) -> Result<Fast, Box<dyn Error>> {
+/// [`Error`] if a tolerance or a grid is out of reach.
+pub fn planned(points: &Points, radii: &[f64], period: f64, tolerance: f64) -> Result<Fast, Error> {
     let heights: Vec<f64> = radii.iter().map(|radius| radius / period).collect();
     let [a, b, c] = points.frequencies.half();
     // The series has an odd number of modes, from -most to most, as the transform numbers them.
     let modes = [a, b, c, points.expansion.rank()];
-    let plan = Plan::new(modes, tolerance, heights.len())?;
+    let plan = Plan::new(modes, tolerance, heights.len()).map_err(refused)?;
     Ok(Fast {
-        sorted: plan.locate(&lifted(points, &heights))?,
+        sorted: plan.locate(&lifted(points, &heights)).map_err(refused)?,
         work: plan.workspace(),
         sums: vec![Complex64::default(); plan.mode_count()],
         heights,
@@ -150,8 +141,8 @@ pub fn planned(
 /// One four-dimensional fast transform.
 ///
 /// # Errors
-/// If a centre is not finite.
-pub fn fast(points: &Points, fast: &mut Fast) -> Result<Vec<Complex64>, Box<dyn Error>> {
+/// [`Error`] if a centre is not finite.
+pub fn fast(points: &Points, fast: &mut Fast) -> Result<Vec<Complex64>, Error> {
     let Fast {
         plan,
         heights,
@@ -159,33 +150,12 @@ pub fn fast(points: &Points, fast: &mut Fast) -> Result<Vec<Complex64>, Box<dyn 
         work,
         sums,
     } = fast;
-    plan.locate_into(&lifted(points, heights), sorted)?;
+    plan.locate_into(&lifted(points, heights), sorted)
+        .map_err(refused)?;
     // The fourth coordinate carries the functions of the radius; that of frequency zero is one, so that its weights
     // are the phases alone.
     let functions = points.expansion.rank();
-    plan.forward(sorted, &points.weights[functions / 2], work, sums)?;
+    plan.forward(sorted, &points.weights[functions / 2], work, sums)
+        .map_err(refused)?;
     Ok(points.combined(|place, f| sums[place * functions + f]))
-}
-
-/// Multiplications of the direct sums: balls, frequencies held, functions.
-pub fn direct_cost(points: &Points) -> f64 {
-    points.centers.len() as f64
-        * (points.frequencies.count() / 2) as f64
-        * points.expansion.rank() as f64
-}
-
-/// A share of the direct sums: the frequencies of `planes` of the a values of kx, nothing of it kept. The work is the
-/// same for every kx, so that all take a / `planes` times its time. (Fewer values of kz would not do: the phases of x
-/// and y are multiplied once for all of them.)
-pub fn direct_share(points: &Points, planes: usize) -> f64 {
-    let [_, b, c] = points.frequencies.half();
-    let sums = direct::forward(&points.centers, &points.weights, [planes, b, c]);
-    let share = FrequencyBox {
-        size: [planes, b, 2 * c],
-    };
-    let mut output = vec![Complex64::default(); planes * b * c];
-    points
-        .expansion
-        .combine(share, &mut output, |place, f| sums[f][place]);
-    output[0].re
 }

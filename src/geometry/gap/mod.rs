@@ -16,6 +16,7 @@
 
 pub mod expansion;
 pub mod grid;
+pub mod lifted;
 pub mod spectrum;
 pub mod ways;
 

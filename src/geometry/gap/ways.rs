@@ -1,7 +1,8 @@
 //! Two ways from balls to the spectrum of their summed bumps without a grid, both through an [`Expansion`] of the
 //! radius.
 //!
-//! They are direct Fourier sums (NDFT), or a fast transform (NFFT) for each function of the radius. Both end with the product with the kernel and the sum over the functions of the radius, and give the same numbers.
+//! They are direct Fourier sums (NDFT), or a fast transform (NFFT) for each function of the radius. Both end with the
+//! product with the kernel and the sum over the functions of the radius, and give the same numbers.
 
 use super::expansion::Expansion;
 use super::spectrum::{Body, FrequencyBox};
@@ -77,7 +78,7 @@ pub struct Fast {
 }
 
 /// The error of a fast transform that cannot be done.
-fn refused(error: impl std::fmt::Display) -> Error {
+pub(super) fn refused(error: impl std::fmt::Display) -> Error {
     Error::machine(error).help("take a coarser grid")
 }
 
