@@ -46,6 +46,7 @@ pub fn outcome_text(outcome: &DockOutcome) -> String {
             fine.rotations, fine.cells
         ));
     }
+    lines.extend(rescored_text(outcome));
     lines.extend(sharp_text(outcome));
     lines.extend(error_text(outcome));
     lines.push(format!(
@@ -76,6 +77,20 @@ pub fn milliseconds_text(milliseconds: f64) -> String {
         ms if ms >= 0.0995 => format!("{ms:.2} ms"),
         ms => format!("{:.0} µs", 1e3 * ms),
     }
+}
+
+/// The pose terms that rescored, and their time.
+fn rescored_text(outcome: &DockOutcome) -> Option<String> {
+    let terms = outcome.poses.first()?.pose_terms.iter();
+    let acting = terms.filter(|(_, value)| value.is_some());
+    let labels: Vec<&str> = acting.map(|(term, _)| term.label).collect();
+    let mut stages = outcome.timing.iter();
+    let stage = stages.find(|stage| stage.name == "rescore" && !labels.is_empty())?;
+    Some(format!(
+        "Rescored by {} in {:.2} s",
+        labels.join(", "),
+        stage.wall_seconds
+    ))
 }
 
 /// The finding of the sharp stage, and its time.
@@ -399,7 +414,7 @@ pub fn expected_text(plan: &DockPlan, chosen: Option<&Chosen>, is_angle: bool) -
         EngineChoice::Gpu => format!(" on a graphics processor, in {memory:.0} MB"),
         EngineChoice::Cpu => format!(
             ": about {} of search and {memory:.0} MB on {}",
-            time_text(plan.search_seconds(plan.rotations)),
+            time_text(plan.search_seconds(plan.rotations).max(0.1)),
             counted(plan.in_flight(), "thread")
         ),
     };
@@ -468,8 +483,10 @@ pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String
     }
     if let Some(stopped) = outcome.stopped {
         lines.push(format!(
-            "Stopped at the time limit: searched {} of {} rotations",
-            stopped.rotations, plan.rotations
+            "Stopped at the time limit: searched {} of {} rotations, and kept the best {}",
+            stopped.rotations,
+            plan.rotations,
+            counted(stopped.poses, "pose")
         ));
     }
     match outcome.sharp.as_ref().map(|sharp| sharp.finding) {
