@@ -16,6 +16,7 @@ import signal
 import subprocess
 import sys
 import time
+from concurrent.futures import ThreadPoolExecutor
 
 import knotdock
 import pandas
@@ -52,17 +53,17 @@ def children():
     return found
 
 
-def kill_one(words, shards, seconds=120):
+def kill_one(words, shards, is_over=lambda: False, seconds=600):
     """Kill the first process whose command line has all words, once two pairs of a shard were started."""
     end = time.monotonic() + seconds
-    while time.monotonic() < end:
+    while time.monotonic() < end and not is_over():
         started = [path for path in shards.glob("shards/*/attempts.csv") if path.read_bytes().count(b"\n") > 1]
         for pid, line in children().items():
             if started and all(word in line for word in words) and pid != os.getpid():
                 os.kill(pid, signal.SIGKILL)
                 return
         time.sleep(0.02)
-    sys.exit(f"no process of {words} was seen")
+    sys.exit(f"no process of {words} was seen in mid-run")
 
 
 def wait(condition, what, seconds=300):
@@ -134,16 +135,18 @@ def by_snakemake(folder, pairs, expected):
     words += ["--config", f"pairs={pairs}", f"output={out}", f"shards={SHARDS}", f"dock={' '.join(WORDS)}"]
     with (folder / "snakemake.log").open("w") as log:
         flow = subprocess.Popen([str(word) for word in words], cwd=folder, stdout=log, stderr=log)
-        kill_one(["knotdock", "batch", str(out), "--shard 2/"], out)
-        if flow.wait(timeout=600):
-            sys.exit(f"Snakemake failed:\n{(folder / 'snakemake.log').read_text()[-3000:]}")
+        try:
+            kill_one(["knotdock", "batch", str(out), "--shard 2/"], out, lambda: flow.poll() is not None)
+            if flow.wait(timeout=600):
+                sys.exit("Snakemake failed")
+        except SystemExit:
+            print((folder / "snakemake.log").read_text()[-3000:])
+            raise
     same(out, expected, "Snakemake on Slurm")
 
 
 def by_dask(folder, pairs, expected):
     """dask-jobqueue on Slurm, a worker of which is killed."""
-    import threading
-
     from dask_jobqueue import SLURMCluster
     from distributed import Client
 
@@ -159,10 +162,10 @@ def by_dask(folder, pairs, expected):
         cluster.adapt(minimum=2, maximum=2)
         with Client(cluster) as client:
             client.wait_for_workers(2, timeout=120)
-            killer = threading.Thread(target=kill_one, args=(["dask", "worker", "--nthreads 1", "--name"], out / "batch"))
-            killer.start()
-            done = knotdock.screen(pairs, client, output=out, dock=DOCK, shards=SHARDS)
-            killer.join()
+            with ThreadPoolExecutor() as pool:
+                killer = pool.submit(kill_one, ["dask", "worker", "--nthreads 1", "--name"], out / "batch")
+                done = knotdock.screen(pairs, client, output=out, dock=DOCK, shards=SHARDS)
+                killer.result(timeout=1)
     if (done["pairs"], done["done"], done["failed"]) != (12, 11, 1):
         sys.exit(f"Dask: {done}")
     poses = pandas.read_parquet(done["poses"]).sort_values(["name", "rank"]).reset_index(drop=True)
