@@ -1,4 +1,4 @@
-//! Sets the git commit of the build; "unknown" outside a checkout of its own or without git.
+//! Sets the git commit of the build; "unknown" outside this project's checkout or without git.
 
 use std::path::Path;
 use std::process::Command;

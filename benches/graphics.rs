@@ -1,10 +1,10 @@
 //! Time of a rotation of the example pair on a graphics processor beside one thread of the CPU, in the same run,
 //! peaks included.
 //!
-//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name. For
-//! two ranks of the lifted axis, that of shape alone and about that of all effects of proteins, it prints the milliseconds
-//! of a rotation on either device, their ratio, and the stages on the card, each submitted by itself. Except on an adapter
-//! that is software, it also times 54,000 rotations: the same 3,600 fifteen times.
+//! `cargo bench --bench graphics` takes the adapter that `knotdock dock --engine gpu` takes, and prints its name. It
+//! measures two ranks of the lifted axis, that of shape alone and about that of all effects of proteins. It prints the
+//! milliseconds per rotation on either device, their ratio, and the stages on the card, each submitted by itself.
+//! Except on an adapter that is software, it also times 54,000 rotations: the same 3,600 fifteen times.
 
 mod example;
 

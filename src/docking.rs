@@ -83,7 +83,7 @@ impl<'a> Docking<'a> {
         }
     }
 
-    /// Sets the receiver of the run's progress, which can end the run.
+    /// Sets the receiver of progress, which can end the run.
     pub fn progress(self, progress: &'a dyn Progress) -> Self {
         Self { progress, ..self }
     }

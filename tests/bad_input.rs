@@ -313,7 +313,7 @@ fn a_negative_number_is_judged_as_the_value_that_it_is() {
     }
 }
 
-/// Found by an audit: a structure was replaced by the table of its own atoms, and a run.json by a table of poses.
+/// Found by an audit: a structure was replaced by the table of its atoms, and a run.json by a table of poses.
 #[test]
 fn no_file_is_written_over_one_that_is_read_nor_over_another_unasked() {
     let place = Place::new();
@@ -463,8 +463,8 @@ fn misspelled_words_are_refused_with_a_remedy() {
     }
 }
 
-/// Units and remedies that a new user missed: `1deg` was "a whole number between ...", 5 was seconds without a word,
-/// one file alone was refused without a word on rings, and memory was counted in bytes.
+/// Units and remedies that a new user missed. `1deg` was "a whole number between ...", and 5 was seconds without a
+/// notice. One file alone was refused without a hint at rings, and memory was counted in bytes.
 #[test]
 fn messages_name_units_and_remedies() {
     let place = Place::new();

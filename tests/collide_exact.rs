@@ -1,5 +1,5 @@
 //! Collisions of ball solids beside parry3d's exact ones of their meshes: no verdict contradicts it, and the distance
-//! of solids that are apart lies between the bounds. `scripts/checks/check_solids.py` does the same with coal and
+//! of separate solids is between the bounds. `scripts/checks/check_solids.py` does the same with coal and
 //! Manifold, and more poses.
 
 #[path = "../benches/collide/path.rs"]

@@ -1,5 +1,5 @@
 //! The command line as people see it: help of a screen, presets, options that files alone give, completions, pages of
-//! the manual, and what a run prints.
+//! the manual, and the output of a run.
 
 use std::fs;
 use std::path::Path;

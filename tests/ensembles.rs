@@ -1,4 +1,4 @@
-//! Several conformations of a side: every pair docked, one ranking, and what is done with it later.
+//! Several conformations of a side: every pair docked, one ranking, and its later uses.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -1,4 +1,4 @@
-//! The JSON object of each command, and what goes to which stream.
+//! The JSON object of each command, and the stream of each output.
 
 use crate::molecules;
 use std::fs;
@@ -357,7 +357,7 @@ fn score_reports_the_geometry_of_the_pose() {
     assert!((same["geometry"]["shape_tanimoto"].as_f64().unwrap() - 1.0).abs() < 1e-9);
 }
 
-/// `-v` adds the times of stages and effects to what a run says by default; `-q` leaves all of it out.
+/// `-v` adds the times of stages and effects to the default output of a run; `-q` leaves all of it out.
 #[test]
 fn verbose_says_more_and_quiet_says_nothing() {
     let folder = place();

@@ -1,4 +1,4 @@
-//! Interface predictions and membranes: how poses are ranked and searched by them, and what is refused.
+//! Interface predictions and membranes: how poses are ranked and searched by them, and the inputs that are refused.
 
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;

@@ -277,8 +277,8 @@ fn all_models_are_recorded_and_followed() {
     );
 }
 
-/// The option that B values are pLDDT is followed where no file is detected as a prediction. Where one is, a measured
-/// partner is left unchanged.
+/// The option that B values are pLDDT is followed if no file is detected as a prediction. If one is, a measured partner
+/// is left unchanged.
 #[test]
 fn b_values_that_the_user_calls_plddt_are_read_as_such() {
     let folder = place();

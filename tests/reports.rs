@@ -1,4 +1,4 @@
-//! Reports: what stands in them, which files they touch, and how they are refused. `scripts/browser_checks.sh` opens
+//! Reports: their content, the files that they touch, and how they are refused. `scripts/browser_checks.sh` opens
 //! them in a browser.
 
 use std::collections::BTreeMap;
@@ -134,7 +134,7 @@ fn what_is_missing_is_named() {
     assert!(said.contains("ligand.pdb"), "{said}");
 }
 
-/// Names of files and chains are text in a page, whatever stands in them.
+/// Names of files and chains are text in a page, whatever characters they have.
 #[cfg(unix)]
 #[test]
 fn names_are_no_markup() {

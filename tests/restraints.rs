@@ -1,4 +1,4 @@
-//! Distance restraints: what is searched and ranked by them, what a run writes, and what is refused.
+//! Distance restraints: search and ranking by them, the files of a run, and the inputs that are refused.
 
 use std::collections::BTreeMap;
 use std::fs;

@@ -26,7 +26,7 @@ use knotdock_structures::molecule::{InputSpec, Molecule, ReadOptions, read};
 /// What may move: this share of the largest magnitude of a column in its case. Sums run in f64 in one order; other
 /// processors round otherwise.
 const TOLERANCE: f64 = 1e-6;
-/// The same for what the fast path computed in f32.
+/// The tolerance for values that the fast path computed in f32.
 const FAST_TOLERANCE: f64 = 1e-4;
 /// Rotations of the small searches, and poses of each that the table has.
 const ROTATIONS: usize = 60;
@@ -43,7 +43,7 @@ fn folder() -> PathBuf {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("tests/scoring_table")
 }
 
-/// The options that a case is scored and searched with: the defaults but for what is blocked.
+/// The options that a case is scored and searched with: the defaults but for blocked residues.
 fn options(case: &str) -> DockOptions {
     let blocked = |residues: &str| (case == BLOCKED).then(|| residues.parse().unwrap());
     DockOptions::default().changed(|options| {
@@ -120,7 +120,7 @@ fn scored(
     (on, scores, rescored)
 }
 
-/// A table: case and number, then values by column; an empty field is what does not exist.
+/// A table: case and number, then values by column; an empty field is a value that does not exist.
 type Table = BTreeMap<(String, u32), Vec<Option<f64>>>;
 
 fn read_table(name: &str) -> Table {

@@ -1,4 +1,4 @@
-//! `knotdock tradeoff`: its table, its fronts, its advice and what it refuses, on two helices and on two meshes.
+//! `knotdock tradeoff`: its table, its fronts, its advice and its refusals, on two helices and on two meshes.
 
 use crate::docking_parts;
 use std::fs;
@@ -349,9 +349,8 @@ fn a_docking_within_an_accuracy_and_a_time() {
     }
 }
 
-/// A budget is a deadline: the search stops, and what it
-/// searched is recorded, so that the run repeats to the byte. It once went on to its last rotation, at four times the
-/// time allowed.
+/// A budget is a deadline: the search stops, and the rotations that it searched are recorded, so that the run repeats
+/// to the byte. It once went on to its last rotation, at four times the time allowed.
 #[test]
 fn a_search_stops_at_its_deadline_and_is_repeated_to_the_byte() {
     let folder = tempfile::tempdir().unwrap();

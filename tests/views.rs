@@ -74,7 +74,7 @@ fn complexes_are_exported_as_models() {
     assert!(!folder.path().join("run/top/ensemble.pdb").exists());
 }
 
-/// Where the table lists every pose, the best of each cluster can be had alone.
+/// If the table lists every pose, the best of each cluster can be exported alone.
 #[test]
 fn the_best_of_each_cluster_is_exported() {
     let folder = place();

@@ -1,4 +1,4 @@
-//! Times of questions on a path, and what is left of them: median, 99% and worst.
+//! Times of questions on a path, and their spread: median, 99% and worst.
 
 use std::hint::black_box;
 use std::time::Instant;

@@ -1,7 +1,7 @@
-//! Where a rising curve meets a level.
+//! Crossing of a rising curve and a level.
 
 /// The argument at which a curve given by rising (argument, value) pairs first rises above `level`, between two of
-/// its points on logarithmic axes. `None` where it is above from the start or never is.
+/// its points on logarithmic axes. `None` if it is above from the start or never is.
 pub fn crossing(curve: &[[f64; 2]], level: f64) -> Option<f64> {
     curve.windows(2).find_map(|pair| {
         let [[x0, y0], [x1, y1]] = [pair[0], pair[1]];

@@ -30,7 +30,7 @@ const COLOURS: [Colour; 4] = [
 /// The figure's tables and picture.
 ///
 /// # Errors
-/// Where a transform cannot be planned.
+/// If a transform cannot be planned.
 pub fn figure(scenes: &[(&Scene, &Kernel)]) -> Result<Figure, Box<dyn Error>> {
     let mut grids = Vec::new();
     for (scene, kernel) in scenes {

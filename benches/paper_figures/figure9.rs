@@ -122,7 +122,7 @@ fn row(
 /// The figure's table and picture, from one correlation a grid size.
 ///
 /// # Errors
-/// Where a transform cannot be planned.
+/// If a transform cannot be planned.
 pub fn figure(correlations: &[(&Scene, &Kernel, &Whole)]) -> Result<Figure, Box<dyn Error>> {
     let mut rows = Vec::new();
     for (scene, kernel, whole) in correlations {

@@ -8,11 +8,11 @@
 //! - `--images docs/images` writes the pictures to that folder as well.
 //! - `--grids 12,15` takes fewer grid sizes, `--figures 5,6` fewer figures; Table 1 belongs to Figure 6.
 //!
-//! The page docs/results/paper_figures.md says what is measured and shows the results.
+//! The page docs/results/paper_figures.md describes the measurements and shows the results.
 //!
 //! - Figure 5 ([`figure5`]): two samples and their Minkowski sum.
 //! - Table 1 and Figure 6 ([`figure6`]): counts, memory and time of Minkowski sums by pairs.
-//! - Figure 7 ([`figure7`]): the gap function by FFT, and what is left of it with m' modes.
+//! - Figure 7 ([`figure7`]): the gap function by FFT, and its truncation to m' modes.
 //! - Figure 8 ([`figure8`]): a body's spectrum by rasterising and FFT, or from its balls by direct and fast transforms.
 //! - Figure 9 ([`figure9`]): one configuration from m' modes.
 //!

@@ -1,4 +1,4 @@
-//! The upper part of Figure 7: a section through the gap function, what m' modes make of it, and what they miss.
+//! The upper part of Figure 7: a section through the gap function, its truncation to m' modes, and the error.
 
 use crate::whole::Whole;
 use knotdock_cli::plot::svg::Svg;

@@ -2,7 +2,7 @@
 
 use std::fmt::Write;
 
-/// What stands in a cell.
+/// Content of a cell.
 #[derive(Clone, Debug)]
 pub enum Cell {
     /// Words.

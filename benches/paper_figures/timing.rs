@@ -8,7 +8,7 @@ const ENOUGH: f64 = 0.2;
 const MIN_RUNS: usize = 2;
 const MAX_RUNS: usize = 300;
 
-/// Processor seconds of one call, and what it gave.
+/// Processor seconds of one call, and its result.
 pub fn timed<R>(task: impl FnOnce() -> R) -> (f64, R) {
     let start = ThreadTime::now();
     let result = black_box(task());

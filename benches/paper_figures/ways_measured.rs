@@ -13,8 +13,8 @@ use num_complex::Complex64;
 use std::error::Error;
 
 /// Bounds of the error that the ways without a grid are allowed, as a share of the value at frequency zero. Between
-/// them it is what the grid itself makes at the same frequencies, so that like is compared with like: half for the
-/// expansion, half for the transform.
+/// them it is the grid's own error at the same frequencies, so that like is compared with like: half for the expansion,
+/// half for the transform.
 const TOLERANCE: [f64; 2] = [1e-6, 1e-2];
 /// Multiplications above which only a share of the direct sums is timed: about a third of a second.
 const SHARE: f64 = 4e8;
@@ -91,7 +91,7 @@ fn error(reference: &[Complex64], value: impl Fn(usize) -> Complex64) -> f64 {
 /// Measures all ways at all m' of one grid size.
 ///
 /// # Errors
-/// Where a transform cannot be planned.
+/// If a transform cannot be planned.
 pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>> {
     let body = &scene.bunny;
     let grid = Grid::new(scene.per_axis, scene.edge);

@@ -14,7 +14,7 @@ const CONTACT: f64 = 1e-3;
 /// Pairs of balls of which pairwise summation is timed; the time of all follows by their number.
 const PAIRS: usize = 4_000_000;
 
-/// The function of one grid size, and what its steps took, in seconds.
+/// The function of one grid size, and the times of its steps in seconds.
 pub struct Whole {
     grid: Grid,
     spectra: [Vec<Complex64>; 2],

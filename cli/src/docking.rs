@@ -29,7 +29,7 @@ pub struct Docking {
     pub(super) known: Option<KnownComplex>,
     pub(super) prepared: PreparedPair,
     pub(super) chosen: Option<Chosen>,
-    /// Where the run has a budget.
+    /// End of the budget, if the run has one.
     pub(super) deadline: Option<Instant>,
     pub(super) clock: Clock,
 }

@@ -5,7 +5,7 @@ use num_complex::Complex64;
 
 /// The complex double-skin affinity function of a solid (B&I eq. 51) as lifted knots (x, r) with complex weights.
 ///
-/// F_S = i (f_{S+B0} - lambda f_S): on lifted knots growth is a shift along the radius axis, so F_S is (x, r + r0) with
+/// F_S = i (f_{S+B0} - lambda f_S). On lifted knots growth is a shift along the radius axis, so F_S is (x, r + r0) with
 /// the weights i c, then (x, r) with -i lambda c. The product of two such functions is the score. No factor is conjugated:
 /// B&I's eq. 52-53 conjugate one and so lose the sign i * i = -1 that their text needs.
 #[allow(dead_code, reason = "not every test program reads it")]

@@ -148,10 +148,10 @@ fn slices_meet_the_requested_tolerance() {
     }
 }
 
-/// Below 1e-2 the grid's spacing comes from a bound on what the modes beyond it take, with a slack that whole sums have
-/// never used up. Cases: small bodies, whose few pairs may be off in phase, offsets near zero, where skins and cores
-/// nearly cancel, and kernels with a cusp or an edge. Of larger bodies, the slowest and the least delicate, every two of
-/// offset, kernel and tolerance meet; `KNOTDOCK_WHOLE=1` takes all three together.
+/// Below 1e-2 the grid's spacing comes from a bound on the sum of the modes beyond it, with a slack that whole sums
+/// have never used up. Cases: small bodies, whose few pairs may be off in phase, offsets near zero, where skins and
+/// cores nearly cancel, and kernels with a cusp or an edge. For larger bodies, the slowest and the least delicate,
+/// every two of offset, kernel and tolerance are combined; `KNOTDOCK_WHOLE=1` combines all three.
 #[test]
 fn cut_modes_stay_within_the_tolerance() {
     let whole = std::env::var_os("KNOTDOCK_WHOLE").is_some();

@@ -43,7 +43,7 @@ fn pose() -> impl Strategy<Value = Pose> {
 proptest! {
     #![proptest_config(ProptestConfig { cases: 24, ..ProptestConfig::default() })]
 
-    /// The score is what its slices say, finite, and the same when the bodies change places under the inverse pose.
+    /// The score is the sum of its slices, finite, and the same when the bodies change places under the inverse pose.
     #[test]
     fn finite_summed_and_symmetric(a in knots(), b in knots(), pose in pose()) {
         let ours = score(options(10.0, 2.0), &a, &b, &pose);

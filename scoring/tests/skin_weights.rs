@@ -1,4 +1,4 @@
-//! Grown balls with weights of their own: the engine of the product kernel against the sum over all pairs.
+//! Grown balls with separate weights: the engine of the product kernel against the sum over all pairs.
 
 use crate::scene::{cloud, engine_options};
 use knotdock_scoring::Precision;

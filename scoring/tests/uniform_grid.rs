@@ -426,8 +426,8 @@ fn modes_equal_the_direct_transforms() {
     }
 }
 
-/// No pose may score through the periodic image: where the ligand lies between receptor and image, the pair sum, which
-/// has none, agrees.
+/// No pose may score through the periodic image: if the ligand is between receptor and image, the pair sum, which has
+/// no image, agrees.
 #[test]
 fn nothing_wraps() {
     let (a, b) = (cloud(60, 7.0, &RADII, 15), cloud(40, 8.0, &RADII, 16));

@@ -1,4 +1,4 @@
-//! Outcome of a docking run: ranked poses, the plan it followed, the errors it measured and what it cost.
+//! Outcome of a docking run: ranked poses, the plan it followed, the errors it measured and its cost.
 
 use crate::options::Stopped;
 use crate::rank::ranking::RankedPose;
@@ -129,7 +129,7 @@ pub struct DockOutcome {
     pub clusters: usize,
     /// Rotations of the set that were searched.
     pub searched: usize,
-    /// Where the run stopped for a deadline, or one that it repeats did; `None` where it went to its end.
+    /// Place where the run, or one that it repeats, stopped for a deadline; `None` if it went to its end.
     pub stopped: Option<Stopped>,
     /// The fast path's error as measured.
     pub error: MeasuredError,

@@ -23,7 +23,7 @@ pub enum Pair<'a> {
     Meshes([Shape<'a>; 2]),
 }
 
-/// Meshes as balls, and what it took to make them.
+/// Meshes as balls, and the cost of making them.
 #[derive(Clone, Debug)]
 pub struct Sampling {
     /// The balls of both.
@@ -171,7 +171,7 @@ pub struct GivenLengths {
     pub alpha: bool,
 }
 
-/// The defaults of options that follow from the sampling of meshes, for what was not given.
+/// The defaults of options that follow from the sampling of meshes, if they were not given.
 pub fn sampled_defaults(meshes: &MeshPair, options: &mut DockOptions, given: GivenLengths) {
     options.kernel.offset = meshes.offset;
     if !given.alpha {

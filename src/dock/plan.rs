@@ -183,7 +183,7 @@ impl DockPlan {
         self.search.in_flight
     }
 
-    /// Balls of receptor and ligand that the resolution is too coarse to tell from points.
+    /// Balls of receptor and ligand that the resolution is too coarse to distinguish from points.
     pub fn unresolved(&self) -> [usize; 2] {
         [&self.receptor, &self.ligand].map(|knots| self.search.engine.unresolved(knots).len())
     }

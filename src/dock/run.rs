@@ -44,8 +44,8 @@ const REFINED_TOGETHER: usize = 4;
 /// Docks as planned. Clusters are formed by the RMSD of `points` of the ligand in its own frame: [`molecule_points`]
 /// of a molecule, the centres of the balls of a mesh.
 ///
-/// Runs on [`DockPlan::in_flight`] threads: those of the caller's rayon pool if it has so many, else a pool of its own,
-/// and never the global pool ([`threads::on`]). Planning and sampling run in the caller's pool.
+/// Runs on [`DockPlan::in_flight`] threads: those of the caller's rayon pool if it has that many, else a new pool, and
+/// never the global pool ([`threads::on`]). Planning and sampling run in the caller's pool.
 ///
 /// # Errors
 /// [`Error`] when threads cannot be had or no pose scores.
@@ -234,7 +234,7 @@ struct SearchResult {
 }
 
 impl SearchResult {
-    /// Where the run stopped before its end, if it did: `kept` poses are carried on.
+    /// Place where the run stopped before its end, if it did: `kept` poses are carried on.
     fn stopped(&self, plan: &DockPlan, kept: usize) -> Option<Stopped> {
         (self.searched < plan.rotations || kept < self.peaks.len()).then_some(Stopped {
             rotations: self.searched,
@@ -391,7 +391,7 @@ impl Check {
         }
     }
 
-    /// The exact scores of poses that are candidates as they are; of rings none, for none lies on the grid.
+    /// The exact scores of poses that are candidates unrefined; none for rings, since no ring is on the grid.
     fn at_start(&self, plan: &DockPlan) -> &[ScoreTerms] {
         if plan.search.space.is_on_grid() {
             &self.at_grid

@@ -32,7 +32,7 @@ pub enum LengthUnit {
 }
 
 impl LengthUnit {
-    /// T of the clusters' scores as a share of the run's best score, by what is docked.
+    /// T of the clusters' scores as a share of the best score, by the kind of bodies.
     pub(crate) fn cluster_temperature(self) -> f64 {
         match self {
             Self::Angstrom => 0.1,
@@ -316,7 +316,7 @@ fn core_weights(molecule: &Molecule, weight: f64) -> Vec<f64> {
         .collect()
 }
 
-/// Numbers of a molecule's labelled atoms. Hydrogens, where they are kept, have no contact types of their own.
+/// Numbers of a molecule's labelled atoms. Hydrogens, if they are kept, have no contact types.
 fn label_counts(molecule: &Molecule, labels: &LabelReport) -> LabelCounts {
     let heavy = molecule.atoms.iter().filter(|atom| !atom.is_hydrogen());
     LabelCounts {

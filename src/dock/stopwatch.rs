@@ -20,7 +20,7 @@ struct Started {
     cpu: Option<CpuTime>,
 }
 
-/// CPU time of the run: that of the process, or where other runs share it that of the run's one thread.
+/// CPU time of the run: that of the process, or if other runs share it that of its one thread.
 enum CpuTime {
     Process(ProcessTime),
     Thread(ThreadTime),

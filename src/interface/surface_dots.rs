@@ -293,8 +293,8 @@ mod tests {
         surface_dots(&spheres(balls), probe, density).len() as f64 / density
     }
 
-    /// Two equal balls: caps of height r + z on each, and a saddle whose area is 2 pi (p t T - 2 p^2 sin(T/2)), in which
-    /// t is the radius of the probe's circle and T the angle that the probe sweeps.
+    /// Two equal balls: caps of height r + z on each, and a saddle whose area is 2 pi (p t T - 2 p^2 sin(T/2)). Here t
+    /// is the radius of the probe's circle and T the angle that the probe sweeps.
     #[test]
     fn areas_are_those_of_closed_forms() {
         let (r, p) = (1.7_f64, 1.5_f64);
@@ -313,7 +313,7 @@ mod tests {
         );
     }
 
-    /// Three touching balls: every dot is a probe's radius from a free place of the probe and inside none, and each of the
+    /// Three touching balls: every dot is a probe's radius from a free place of the probe and inside none. Each of the
     /// two probes on top of them has a triangle, whose area is that of its angles.
     #[test]
     fn dots_lie_where_the_probe_touches() {

@@ -293,7 +293,7 @@ mod tests {
         }
     }
 
-    /// A file that the file names lies in its folder.
+    /// A file that the file names is in its folder.
     #[test]
     fn files_are_looked_for_from_the_file_s_folder() {
         let folder = tempfile::tempdir().unwrap();

@@ -217,7 +217,7 @@ mod tests {
         }
     }
 
-    /// The heading of each option is the name of its struct's field, and its name that of its own field: so the
+    /// The heading of each option is the name of its struct's field, and its name that of the option's field: so the
     /// command line, files and records agree. Options of the machine are in no record.
     #[test]
     fn names_and_headings_are_those_of_the_fields() {

@@ -18,7 +18,7 @@ use crate::restraints::{Crosslink, RequiredCount, RestraintFile, TblBounds};
 const PEPTIDASE_WEIGHT: f64 = 500.0;
 
 options! {
-    /// What is known of the contacts: residues that make them or make none, antibodies, peptidases.
+    /// Known contacts: residues that make them or make none, antibodies, peptidases.
     RestraintOptions as restraints, "Restraints", Molecules {
         /// What may touch of an antibody: cdrs or whole.
         ///

@@ -116,7 +116,7 @@ mod tests {
     use std::sync::Arc;
 
     /// The filter keeps the voxels about whose position the pose can slide both ways along its axis, wherever the
-    /// molecule stands in its file. Each row's largest value is its own.
+    /// molecule is in its file. The largest value of each row is in that row.
     #[test]
     fn voxels_stay_that_the_plane_across_the_axis_runs_through() {
         let centers = vec![[40.0, -7.0, 3.0], [43.0, -5.0, 1.0], [38.0, -9.0, 7.0]];

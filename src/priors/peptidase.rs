@@ -466,8 +466,8 @@ mod tests {
         }
     }
 
-    /// As its activated form has it, in chains of their own; with the serine mutated, modified or left out; and two
-    /// copies, whose residues go with the nearer.
+    /// Residues in separate chains, as in the activated form; the serine mutated, modified or left out; and two copies,
+    /// whose residues go with the nearer.
     #[test]
     fn sites_span_chains_and_do_without_the_serine() {
         let base = || chain("B", "WVVTAAHCGVTTSD", 51, &[57]);

@@ -2,14 +2,14 @@
 //!
 //! The fast path's error is measured in every run and is far below the differences between clusters. An exact sum
 //! costs as much as a whole rotation of the search. So poses are merged and clustered by the fast path's values (the
-//! grid's, or the receptor field's where a pose was refined); rows of the table carry exact scores.
+//! grid's, or the receptor field's if a pose was refined); rows of the table carry exact scores.
 //!
 //! If poses are rescored, all this goes by the pose score: the sum of the score and the rescoring terms. For rings it
 //! includes the score of copies beyond the neighbours.
 //!
 //! Clusters are ordered by their score, T ln sum exp(s / T) over their poses' pose scores s. This is the best pose's
-//! score if that pose is alone. It is more if many good poses are about it, as they are about a native one.
-//! T is a tenth of the run's best score, sharp fits left out. On training pairs anything from a twentieth to a fifth
+//! score if that pose is alone. It is more if many good poses are near it, as they are near a native one. T is a tenth
+//! of the best score of the run, sharp fits left out. On training pairs anything from a twentieth to a fifth
 //! ranked better than the best pose alone (docs/research/defaults.md).
 //!
 //! Clusters of meshes are ordered by their best poses alone (T = 0). A flat face slides on another at nearly the same
@@ -37,7 +37,7 @@ pub(crate) struct PoseScorer<'a> {
     pub on: [bool; Effect::ALL.len()],
     /// The poses that are searched.
     pub space: &'a PoseSpace,
-    /// T of the clusters' scores, as a share of the run's best score.
+    /// T of the clusters' scores, as a share of the best score.
     pub cluster_temperature: f64,
     /// Whether rows have the values of the columns for diagnosis.
     pub diagnostics: bool,
@@ -78,7 +78,7 @@ pub struct RankedPose {
     pub sharp: Option<SharpPose>,
     /// Sum that ranks poses: `search_score`, the pose terms, `other_copies` and the score of the sharp fit.
     pub pose_score: f64,
-    /// Standard deviations of `pose_score` above the mean of the run's kept poses; `None` if they do not differ.
+    /// Standard deviations of `pose_score` above the mean of all kept poses; `None` if they do not differ.
     pub z_score: Option<f64>,
 }
 
@@ -177,7 +177,7 @@ pub(crate) fn report(
     }
 }
 
-/// Mean and spread of the scores of the run's kept poses.
+/// Mean and spread of the scores of all kept poses.
 struct Background {
     mean: f64,
     /// `None` if scores differ by no more than the error of the fast path.

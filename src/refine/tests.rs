@@ -59,7 +59,8 @@ fn stages_lower_the_energy_that_is_reported() {
     }
 }
 
-/// A crystal complex that was moved by an Ångström comes nearer to its place, and ends no higher than it lay there.
+/// A crystal complex that was moved by an Ångström comes nearer to its place, and its energy ends no higher than at
+/// that place.
 #[test]
 fn a_bound_complex_returns_to_its_place() {
     let molecules = ["receptor_bound", "ligand_bound"].map(example);

@@ -117,7 +117,7 @@ proptest! {
         }
     }
 
-    /// Files of rows and of statements that say the same are read as the same, and as what they say.
+    /// Files of rows and of statements with one meaning are read alike, and with that meaning.
     #[test]
     fn what_is_written_comes_back(
         rows in prop::collection::vec((site(0), site(1), 0.0..9.0f64, 0.0..9.0f64, any::<bool>()), 1..20),

@@ -15,7 +15,7 @@ use knotdock_structures::sampling::{Method, sample};
 
 type Surface = (Vec<[f64; 3]>, Vec<[u32; 3]>);
 
-/// A disk of radius 10 and height 4 with so many sides, its caps cut from their middles; its axis is (0, s, c).
+/// A disk of radius 10 and height 4 with `sides` sides, its caps cut from their middles; its axis is (0, s, c).
 fn cylinder(sides: u32, (s, c): (f64, f64)) -> Surface {
     let mut positions = vec![[0.0, 0.0, -2.0], [0.0, 0.0, 2.0]];
     let mut triangles = Vec::new();

@@ -106,7 +106,7 @@ fn save(path: &Path, molecule: &Molecule, remark: String) -> Result<(), Box<dyn 
     Ok(())
 }
 
-/// The molecule turned at random about its centroid, which comes to lie on the origin.
+/// The molecule turned at random about its centroid, which is moved to the origin.
 fn turned(molecule: &Molecule, seed: u64) -> Molecule {
     let rotation = random_quaternion(seed);
     println!("turned by w, x, y, z = {rotation:?}");

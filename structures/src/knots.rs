@@ -174,7 +174,7 @@ impl Knots {
         bounds(self.centers.iter().copied())
     }
 
-    /// The distinct radii in rising order, and for each knot the index of its own among them.
+    /// The distinct radii in rising order, and the index of each knot's radius among them.
     pub fn radius_classes(&self) -> (Vec<f64>, Vec<usize>) {
         let mut distinct = self.radii.clone();
         distinct.sort_by(f64::total_cmp);

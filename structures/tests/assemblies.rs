@@ -193,7 +193,7 @@ fn a_unit_that_is_no_assembly_is_warned_of() {
     assert_eq!(warned(&whole.replace("BIOMT2", "BIOMT9"), ""), "");
 }
 
-/// A chain named in two lines, two assemblies of one description, two groups with operators of their own.
+/// A chain named in two lines, two assemblies of one description, two groups each with its operators.
 #[test]
 fn lines_of_the_remark_belong_together() {
     let folder = tempfile::tempdir().unwrap();

@@ -268,8 +268,8 @@ fn degenerate_triangles_do_not_change_the_solid() {
     }
 }
 
-/// A curved sheet: all but a tenth of what would close it is missing, and only a sliver on its hollow side has a
-/// winding number above one half. Where no ball fits at all, that is said.
+/// A curved sheet: nine tenths of the closed surface are missing, and only a sliver on its hollow side has a winding
+/// number above one half. If no ball fits at all, the error says so.
 #[test]
 fn a_sheet_has_next_to_no_inside() {
     let ball = sphere([0.0; 3], 1.0, 40);

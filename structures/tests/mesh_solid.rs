@@ -41,7 +41,7 @@ fn depth_in_and_about_a_box() {
     }
 }
 
-/// The polyhedron's vertices lie on the sphere, so its depth is at most that of the ball and less by at most the
+/// The polyhedron's vertices are on the sphere, so its depth is at most that of the ball and less by at most the
 /// sagitta.
 #[test]
 fn depth_in_and_about_a_ball() {
@@ -203,7 +203,8 @@ fn triangles_and_parts_that_face_the_wrong_way_are_turned() {
     }
 }
 
-/// A surface whose triangles have corners of their own, a little off their neighbours', as many programs write them.
+/// A surface whose triangles share no corners: each corner is a little off its neighbours', as many programs write
+/// them.
 fn in_pieces(surface: &Surface) -> Surface {
     let mut pieces = Surface {
         positions: Vec::new(),
@@ -223,7 +224,7 @@ fn in_pieces(surface: &Surface) -> Surface {
     pieces
 }
 
-/// A piece of a surface has no inside of its own: all face as the whole does, the wall of a cavity too.
+/// A piece of a surface has no inside: all pieces face as the whole does, the wall of a cavity too.
 #[test]
 fn pieces_of_a_surface_are_turned_together() {
     let outer = cuboid([-1.0; 3], [1.0; 3]);

@@ -65,7 +65,7 @@ fn hole(middle: [f64; 2], radius: f64, corners: usize, first: f64) -> Vec<[f64; 
         .collect()
 }
 
-/// A cap with a hole is one polygon, whose bridge is run through both ways. Where the corners of the bridge were other
+/// A cap with a hole is one polygon, whose bridge is run through both ways. If the corners of the bridge were other
 /// vertices in the same places, as exporters without shared vertices write, the hole was filled: a plate of 168 had a
 /// volume of 200.
 #[test]
@@ -125,8 +125,8 @@ fn distance(a: [f64; 3], b: [f64; 3]) -> f64 {
         .sqrt()
 }
 
-/// Each triangle with corners of its own, each moved along each axis by `step` of the coordinate and a whole number
-/// that looks random from `low` to `high`; every other triangle turned over if `turned`.
+/// Triangles without shared corners: each corner is moved along each axis by `step` of the coordinate and a whole
+/// number that looks random from `low` to `high`; every other triangle turned over if `turned`.
 fn meshed_separately(
     surface: &Surface,
     low: i64,
@@ -297,8 +297,8 @@ fn few_digits_do_not_close_what_is_open() {
     );
 }
 
-/// Open meshes finer than their numbers' rounding are left alone but for what lies within it, and no chain of vertices
-/// collapses: a sheet of many small triangles keeps its extent.
+/// Open meshes finer than their numbers' rounding are left unchanged but for vertices within it, and no chain of
+/// vertices collapses: a sheet of many small triangles keeps its extent.
 #[test]
 fn a_dense_sheet_does_not_collapse() {
     // Triangles a unit of rounding wide, each by itself, and a far one that makes the unit.

@@ -178,7 +178,7 @@ fn chains_of_later_models_have_names_of_their_own() {
     assert_eq!(picked.atoms.len(), 760);
 }
 
-/// An ensemble's models lie on one another, more or less: no warning is due, but where all are read as one.
+/// An ensemble's models overlap: no warning is due, unless all are read as one.
 #[test]
 fn models_on_one_another_are_alternatives() {
     let [first, _] = halves();
@@ -212,7 +212,7 @@ fn models_on_one_another_are_alternatives() {
     }
 }
 
-/// An ion on an axis of symmetry stands in both models, and is one.
+/// An ion on an axis of symmetry is in both models, and is read as one.
 #[test]
 fn atoms_on_an_axis_are_kept_once() {
     let ion = "HETATM 9999 ZN    ZN A 301      10.000  20.000  90.000  1.00 20.00          ZN  \n";

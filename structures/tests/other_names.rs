@@ -1,4 +1,4 @@
-//! Standard residues under other names: charges, contact types and radii are those of what their atoms are.
+//! Standard residues under other names: their atoms decide charges, contact types and radii.
 
 #![cfg(feature = "molecule")]
 

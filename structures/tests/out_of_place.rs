@@ -1,4 +1,4 @@
-//! Records that stand out of their columns, and atoms that stand on one another.
+//! Records that are not in their columns, and atoms on top of one another.
 
 #![cfg(feature = "molecule")]
 
@@ -96,8 +96,8 @@ fn a_record_without_columns_is_refused() {
     assert_eq!(molecule.atoms.len(), 221);
 }
 
-/// Found by a user: a chain given twice, and a mutation beside what it replaced, had all atoms counted twice without a
-/// word.
+/// Found by a user: a chain given twice, and a mutation beside the residue that it replaced, had all atoms counted
+/// twice without a warning.
 #[test]
 fn atoms_of_two_chains_or_names_in_one_place_are_warned_of() {
     assert!(

@@ -88,7 +88,8 @@ fn one_value_a_residue_shows_a_prediction() {
     assert!(shown.contains("warning: 3 of 10 residues"), "{shown}");
 }
 
-/// B columns that are not one value a residue, or no share of a hundred, or low, or the same throughout, are no pLDDT.
+/// B columns without one value per residue, or that are no share of a hundred, or low, or the same throughout, are no
+/// pLDDT.
 #[test]
 fn other_columns_are_no_confidence() {
     type Column = fn(usize, usize) -> f64;

@@ -1,4 +1,4 @@
-//! What is kept and what is dropped: alternate locations, hydrogens, waters, additives, chains; and what is warned of.
+//! Selection of atoms: alternate locations, hydrogens, waters, additives, chains; and the warnings.
 
 #![cfg(feature = "molecule")]
 

@@ -1,4 +1,4 @@
-//! What is written is read again the same, and what a format cannot hold is not squeezed into it.
+//! A written molecule is read again the same, and values that a format cannot hold are not squeezed into it.
 
 #![cfg(feature = "molecule")]
 
@@ -254,7 +254,7 @@ fn the_limits_of_pdb_are_exact() {
     assert!(text.lines().any(|line| line.starts_with("ATOM  99999")));
 }
 
-/// Every copy of a ring has a chain of its own, whatever chains its molecule has, and the map names each.
+/// Every copy of a ring has its own chain, whatever chains its molecule has, and the map names each.
 #[test]
 fn copies_of_a_ring_have_chains_of_their_own() {
     let one = molecule(vec![atom("B", 1, 0.0), atom("A", 1, 1.0)]);

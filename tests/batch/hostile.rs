@@ -1,5 +1,5 @@
-//! Folders of batches in which something else is: files and links of the user's, pipes, bombs, records of no shard. All
-//! of it is refused by name and stays.
+//! Folders of batches with other content: the user's files and links, pipes, bombs, records of no shard. All of it is
+//! refused by name and stays.
 
 use std::fs::{self, File};
 use std::io::Write;
@@ -123,7 +123,7 @@ fn a_scratch_folder_of_something_else_stays() {
     assert!(files(&left) == before);
 }
 
-/// Of two processes with scratch folders of their own each replaced what the other had written, until nothing was left.
+/// Two processes with separate scratch folders each replaced the files of the other, until nothing was left.
 #[test]
 fn a_shard_is_docked_by_one_process() {
     let folder = place();
@@ -367,7 +367,7 @@ fn no_pair_has_the_name_of_a_file_of_the_batch() {
     }
 }
 
-/// Rows of another table would stand beside those of this one; the message says which they are.
+/// Rows of another table would be mixed with those of this one; the message names them.
 #[test]
 fn a_table_that_has_changed_is_refused_by_its_rows() {
     for keep in ["table", "all"] {

@@ -1,4 +1,4 @@
-//! Many pairs in one call: what each leaves, what a failure costs, and what a second call does again.
+//! Many pairs in one call: the files of each, the effect of a failure, and the work that a second call repeats.
 
 mod hostile;
 mod shards;
@@ -241,7 +241,7 @@ fn a_known_complex_is_measured_against() {
     assert_eq!(results(folder.path())[0]["status"], "failed");
 }
 
-/// Columns may be spelled as options are, and files they name stand beside the table whichever way.
+/// Columns may be spelled as options are, and files that they name are beside the table in either spelling.
 #[test]
 fn columns_are_spelled_with_either_line() {
     let folder = place();

@@ -227,7 +227,7 @@ fn copy_shard(root: &Path, from: &str, out: &str) {
     }
 }
 
-/// A failed pair is docked again when that is asked for, and counts once; damaged poses are made anew.
+/// A failed pair is docked again on request, and counts once; damaged poses are made anew.
 #[test]
 fn failed_and_damaged_pairs_are_docked_again() {
     let folder = place();

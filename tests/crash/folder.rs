@@ -32,7 +32,7 @@ impl Snapshot {
         self
     }
 
-    /// Paths of what commands that were ended left; locks are none of it.
+    /// Paths of the files that ended commands left, without locks.
     pub fn leftovers(&self) -> BTreeSet<&str> {
         self.0.keys().filter_map(|path| leftover(path)).collect()
     }

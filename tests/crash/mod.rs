@@ -34,7 +34,7 @@ fn with_a_run(folder: &Path) {
     run(folder, &older);
 }
 
-/// The same, with files of the user's in the run's directory.
+/// The same, with the user's files in the run's directory.
 fn with_a_run_and_notes(folder: &Path) {
     with_a_run(folder);
     fs::write(folder.join("run/notes.txt"), "mine").unwrap();
@@ -51,7 +51,7 @@ fn a_first_run() {
     Scenario::new(inputs, &dock("-o runs/run")).check();
 }
 
-/// The older run and the new one are exchanged at one stroke: one of the two stands after every crash.
+/// The older run and the new one are exchanged at one stroke: one of the two is there after every crash.
 #[test]
 fn a_run_in_place_of_another() {
     let scenario = Scenario::new(with_a_run, &dock("-o run --force"));
@@ -64,7 +64,7 @@ fn a_run_in_place_of_another() {
     scenario.check();
 }
 
-/// A run goes as a whole: one with files of the user's in it, or with edited ones, does not go at all.
+/// A run is removed as a whole: one with the user's files in it, or with edited ones, is not removed at all.
 #[test]
 fn a_run_among_files_of_the_users() {
     let folder = tempfile::tempdir().unwrap();

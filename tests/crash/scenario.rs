@@ -9,7 +9,7 @@ use assert_cmd::cargo::cargo_bin_cmd;
 
 use super::folder::{Snapshot, copy};
 
-/// How much must stand at once after a crash.
+/// The files that must be whole together after a crash.
 #[derive(Clone, Copy, PartialEq)]
 enum Stands {
     /// The old or the new state of all files; the old one may be aside.
@@ -92,7 +92,7 @@ impl Scenario {
         folder
     }
 
-    /// The exit code and what was said.
+    /// The exit code and the messages.
     pub fn call(&self, folder: &Path, variables: &[(&str, &str)]) -> (Option<i32>, String) {
         let mut command = cargo_bin_cmd!("knotdock");
         command

@@ -1,4 +1,4 @@
-//! What goes in and what comes out of it: chains, radii, sizes, formats, complexes.
+//! Inputs and their results: chains, radii, sizes, formats, complexes.
 
 use std::collections::BTreeSet;
 use std::fs;

@@ -67,7 +67,7 @@ fn unchanged(folder: &Path, words: &str) -> Value {
     error
 }
 
-/// Files of the user's in an older run, and files of it that were edited, were mixed with the new one.
+/// The user's files in an older run, and files of it that were edited, were mixed with the new one.
 #[test]
 fn a_run_with_anything_of_the_users_is_not_replaced() {
     let folder = docked();
@@ -343,7 +343,8 @@ fn a_lock_that_is_none_stays() {
     }
 }
 
-/// On file systems without locks the file itself is the lock. One that was left is named, for only the user can tell.
+/// On file systems without locks the file itself is the lock. One that was left is named, since only the user knows
+/// whether it is in use.
 #[cfg(debug_assertions)]
 #[test]
 fn where_there_are_no_locks_the_file_is_one() {

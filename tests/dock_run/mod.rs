@@ -1,4 +1,4 @@
-//! A run and what it leaves: the table, the complexes, the record, and the same bytes again.
+//! A run and its files: the table, the complexes, the record, and the same bytes again.
 
 pub mod run;
 

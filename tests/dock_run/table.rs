@@ -1,4 +1,4 @@
-//! What stands in the table, for any number of threads and with a finer search.
+//! Content of the table, for any number of threads and with a finer search.
 
 use std::collections::BTreeMap;
 use std::fs;
@@ -162,7 +162,8 @@ fn one_row_a_cluster_is_the_first_of_each_of_all_poses() {
     assert_eq!(firsts, clusters);
 }
 
-/// In double precision the fast path meets tolerances that single precision is refused, and what it ranks is the same.
+/// In double precision the fast path meets tolerances that are refused in single precision, and its ranking is the
+/// same.
 #[test]
 fn double_precision_goes_where_single_cannot() {
     let folder = place();

@@ -1,4 +1,4 @@
-//! Rescoring of what a search keeps.
+//! Rescoring of the poses that a search keeps.
 
 use super::*;
 

@@ -1,7 +1,7 @@
 //! Fuzzing of every reader: mutated inputs are read or refused, and nothing panics.
 //!
-//! Here 3,000 inputs a reader; a million by `cargo run --release --example fuzz_readers -- 1000000`. What it found
-//! stands in [`found`], each with its story.
+//! Here 3,000 inputs per reader; a million by `cargo run --release --example fuzz_readers -- 1000000`. Its findings are
+//! in [`found`], each with its story.
 
 mod found;
 mod mutations;

@@ -159,7 +159,8 @@ fn volume(kernel: &knotdock_scoring::kernel::RankingKernel, sigma: f64) -> f64 {
 }
 
 /// The ligand enters the lifted axis through its radii alone. With q distinct radii rank q is exact, and rank q - 1
-/// is not. That holds even where the receptor has so many radii that the modes of the axis themselves are the basis.
+/// is not. That holds even if the receptor has too many radii for classes, and the modes of the axis themselves are the
+/// basis.
 #[test]
 fn as_many_components_as_distinct_radii_are_exact() {
     let many: Vec<f64> = (0..80).map(|i| 1.4 + f64::from(i) / 130.0).collect();

@@ -196,11 +196,11 @@ fn a_sharp_ball_rings_near_its_edge_only() {
 /// Skins from none to one wider than the bodies, lambda from 0 to 1e3, alpha from a point to a sharp ball: the fast
 /// path stays within its tolerance of the pair sum.
 ///
-/// Its measure is the best score. Without a reward (lambda = 0, no skin) that is what the low-pass rings to, and the
-/// measure is the largest |G|.
+/// Its measure is the best score. Without a reward (lambda = 0, no skin) that is only the ringing of the low-pass, and
+/// the measure is the largest |G|.
 ///
-/// At lambda = 1 the sum over pairs cancels, to a four hundredth of the largest |G| with the usual skin, where a single
-/// pair's score does not. A correlator measures that and plans for it, and is what is tried there; `dock` warns.
+/// At lambda = 1 the sum over pairs cancels, to a four hundredth of the largest |G| with the usual skin, although a
+/// single pair's score does not. A correlator measures that and plans for it, and is tried there; `dock` warns.
 ///
 /// First failed at lambda = 100 and 1e3, at a tolerance of 1e-2, with errors of 1.2e-2: there the best score is a
 /// hundredth of the largest |G| instead of a twentieth. Then at lambda = 1 and thin skins, where the slices cancel to

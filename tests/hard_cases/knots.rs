@@ -59,7 +59,7 @@ fn coincident_knots_are_one_knot_many_times() {
 }
 
 /// A duplicated atom is an atom of weight 2, and a knot of weight 0 is none: for the fast path as for the pair sum
-/// (whose own test stands beside it).
+/// (whose own test is in its module).
 #[test]
 fn duplicate_atoms_are_weights() {
     let (a, b) = (cloud(80, 9.0, &RADII, 1), cloud(40, 6.0, &RADII, 2));

@@ -80,8 +80,8 @@ fn size(kernel: &RankingKernel, a: &Knots, b: &Knots) -> f64 {
     1.6 * (1.0 + kernel.options().lambda).powi(2) * pairs(a, b)
 }
 
-/// Scale of the fast path's errors: all pairs in touch, each at the most that it can earn. Where the kernel rewards
-/// nothing, it is a tenth of what a pair loses in overlap: with lambda = 0 an error of 3.5e-4 of the overlap was met
+/// Scale of the fast path's errors: all pairs in touch, each at the most that it can earn. If the kernel rewards
+/// nothing, it is a tenth of a pair's loss in overlap: with lambda = 0 an error of 3.5e-4 of the overlap was met
 /// at a tolerance of 1e-2.
 fn best(plan: &Plan, a: &Knots, b: &Knots) -> f64 {
     let widest = crate::scene::ends(a).1 + crate::scene::ends(b).1;
@@ -123,8 +123,8 @@ proptest! {
     }
 
     /// The fast path, summed from its modes at any pose: finite, symmetric, and at the pair sum's score, to the
-    /// tolerance of what all pairs in touch could earn. Poses reach to the faces of small boxes, so that an image
-    /// would show.
+    /// tolerance relative to the most that all pairs in touch could earn. Poses reach to the faces of small boxes, so
+    /// that an image would show.
     #[test]
     fn the_fast_path_is_finite_and_symmetric(a in knots(), b in knots(), options in options(), place in pose()) {
         let summed = |a: &Knots, b: &Knots, pose: &Pose| {

@@ -2,8 +2,8 @@
 //!
 //! The box holds the receptor, the ligand's diameter, and the kernel's effective reach on either side. Once, designs
 //! of such engines count the reach only once: a ligand in the gap between receptor and image then scores with both.
-//! And the effective reach is one pair's: beyond it the tails of many pairs may add up in step, most so of two
-//! plates, whose knots all lie at the same distance.
+//! And the effective reach is one pair's: beyond it the tails of many pairs may add up in step, most so for two plates,
+//! whose knots are all at the same distance.
 
 use crate::scene::{Pair, RADII, cloud, engine_options, knots, some_rotation};
 use knotdock_scoring::Precision;
@@ -17,7 +17,7 @@ use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use rayon::prelude::*;
 
-/// A lattice of so many knots per axis, spaced like a protein's atoms.
+/// A lattice with the given number of knots per axis, spaced like a protein's atoms.
 fn lattice(counts: [usize; 3]) -> Knots {
     let mut centers = Vec::new();
     for x in 0..counts[0] {
@@ -60,8 +60,8 @@ fn worst(pair: &Pair, rotation: UnitQuaternion<f64>) -> (f64, f64) {
 }
 
 /// The ligand sandwiched between the receptor and its image: rods, plates and balls whose ends or faces point across
-/// the gap, and one that lies along it. At the faces of the box the exact sum, which has no image, says what is left
-/// of the true receptor.
+/// the gap, and one that lies along it. At the faces of the box the exact sum, which has no image, is the true
+/// receptor's remaining score.
 #[test]
 fn a_ligand_between_receptor_and_image_scores_with_neither() {
     let quarter = std::f64::consts::FRAC_PI_4;
@@ -140,7 +140,7 @@ fn the_field_ends_with_the_box() {
 /// the box. At first only the receptor's block was fitted. The window can be wider than the kernel reaches: here it
 /// is 9 cells of 8 Å, and a kernel can be 0 everywhere, as for lambda = 1 without a skin. Knots at the ligand's ends
 /// were then spread outside the block: a panic in debug builds, wrong places in others. The direct sum over the same
-/// modes says what the grid should hold.
+/// modes gives the values that the grid should hold.
 #[test]
 fn a_wide_ligand_fits_into_a_box_of_coarse_cells() {
     let (a, b) = (

@@ -4,7 +4,7 @@ use std::fs;
 
 use super::place::{Place, error};
 
-/// SIGXFSZ ended the program, and what was half-written stayed.
+/// SIGXFSZ ended the program, and half-written files stayed.
 #[test]
 fn a_file_beyond_the_limit_is_a_failure_that_leaves_nothing() {
     let place = Place::new();

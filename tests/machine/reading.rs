@@ -69,7 +69,7 @@ fn a_recorded_input_that_is_no_file_is_refused_unopened() {
     assert!(tables[0] == tables[1]);
 }
 
-/// All of what a name stood for was read into memory before it was looked at.
+/// The whole file of a name was read into memory before it was checked.
 #[test]
 fn what_is_read_whole_is_read_within_bounds() {
     let place = docked();
@@ -162,7 +162,7 @@ fn options_and_tables_may_come_through_a_pipe() {
     call(evaluate, &poses);
 }
 
-/// Readers that call themselves for what lies within would use up their stack.
+/// Recursive readers would use up their stack on nested input.
 #[test]
 fn nesting_without_end_is_refused() {
     let place = docked();

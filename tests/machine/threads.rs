@@ -12,7 +12,7 @@ use assert_cmd::cargo::cargo_bin;
 
 use super::place::{Place, error, not_run};
 
-/// Commands that compute, each into a place of its own.
+/// Commands that compute, each into a separate place.
 const COMMANDS: [&str; 8] = [
     "sample box.obj --grid 2^12 --weights fitted --picture balls.svg --force",
     "dock receptor.pdb ligand.pdb --rotations 16 --refine 3 --write-top 1 -o run --force",

@@ -34,7 +34,7 @@ fn docked(folder: &Path, scene: &Scene, memory: &str) -> Output {
     output.unwrap()
 }
 
-/// Where a scene's run goes.
+/// Directory of a scene's run.
 fn directory(scene: &Scene) -> String {
     scene.name.replace(|c: char| !c.is_alphanumeric(), "_")
 }

@@ -64,8 +64,8 @@ fn together(a: &Knots, b: &Knots) -> Knots {
     .unwrap()
 }
 
-/// A block, and the same block as two halves that touch: the overlap with a probe is the same volume, to what the fit
-/// leaves, though the halves have other balls and more of them.
+/// A block, and the same block as two halves that touch: the overlap with a probe is the same volume, to the error of
+/// the fit, though the halves have other balls and more of them.
 #[test]
 fn a_solid_in_two_halves_overlaps_as_the_whole() {
     let whole = cuboid([-0.5, -0.4, -0.3], [0.5, 0.4, 0.3]);

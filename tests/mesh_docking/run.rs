@@ -144,8 +144,8 @@ fn repeats_itself(more: &[&str]) {
     }
 }
 
-/// Of one scene in another unit every length is so many times as long, and nothing else changes: no constant is in Å.
-/// By a power of two not a digit does.
+/// In another unit every length of a scene is scaled by the same factor, and nothing else changes: no constant is in Å.
+/// If the factor is a power of two, not a digit changes.
 #[test]
 fn the_unit_of_the_files_is_all_that_lengths_depend_on() {
     for sampler in ["lattice", "bi"] {

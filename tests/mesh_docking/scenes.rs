@@ -67,7 +67,7 @@ pub fn solid(part: &Part) -> Solid {
     Solid::new(&mesh).unwrap()
 }
 
-/// Where a ligand is taken before it is docked.
+/// The pose that a ligand is moved to before it is docked.
 pub fn away() -> Pose {
     Pose::from_parts([0.4, 0.5, -0.6, 0.35], [3.0, -2.0, 1.5])
 }

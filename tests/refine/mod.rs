@@ -1,4 +1,4 @@
-//! Refinement of chosen poses of a run: what it writes, that it improves them, and what it refuses.
+//! Refinement of chosen poses of a run: its files, the improvement, and the runs that it refuses.
 
 use std::collections::BTreeMap;
 use std::fs;

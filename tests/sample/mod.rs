@@ -167,7 +167,7 @@ fn what_is_left_out_is_a_warning_and_other_kinds_are_named() {
     assert!(error["message"].as_str().unwrap().contains("STEP"));
 }
 
-/// A step half-way up lies in the picture's slice, where points are neither inside nor outside.
+/// A step half-way up is in the picture's slice, where points are neither inside nor outside.
 #[test]
 fn a_face_in_the_plane_of_the_picture_is_no_hindrance() {
     let place = Place::new();
@@ -315,8 +315,8 @@ fn boxes_within_boxes_are_warned_of_and_refused_when_strict() {
     assert!(error["message"].as_str().unwrap().contains("cavity"));
 }
 
-/// A closed surface that crosses itself, so that half of what it bounds is inside out and lost. No warning said so at
-/// first, though the balls end far from the surface there and the documented bounds fail.
+/// A closed surface that crosses itself, so that half of its solid is inside out and lost. No warning said so at first,
+/// though the balls end far from the surface there and the documented bounds fail.
 #[test]
 fn a_closed_mesh_that_breaks_the_bounds_is_warned_of() {
     let place = Place::new();

@@ -327,8 +327,8 @@ mod tests {
     use knotdock::options::definition::Form;
     use knotdock::options::definitions;
 
-    /// Each option that run.json records is refused beside `--rerun`, and so is what names the inputs; options of the
-    /// machine are not.
+    /// Each option that run.json records is refused beside `--rerun`, and so are the names of the inputs; options of
+    /// the machine are not.
     #[test]
     fn rerun_goes_with_nothing_that_is_recorded() {
         let run = |word: &str| {

@@ -88,7 +88,7 @@ mod tests {
         assert_eq!(shell_word(""), "''");
     }
 
-    /// The shell itself says what a word means to it.
+    /// The shell itself reads each word back.
     #[cfg(unix)]
     #[test]
     fn a_shell_reads_the_text_back() {

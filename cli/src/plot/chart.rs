@@ -493,7 +493,7 @@ mod tests {
             .collect()
     }
 
-    /// Every curve lies within the picture, one name stands once in the legend, and what has no logarithm is left out.
+    /// Every curve is within the picture, each name is once in the legend, and values without a logarithm are left out.
     #[test]
     fn curves_lie_within_their_axes() {
         let panel = |name: &str| Panel {

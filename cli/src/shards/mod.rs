@@ -10,8 +10,8 @@
 //! | `attempts.csv` | the names of pairs that were started, so that a pair that ends the process is given up in the end |
 //!
 //! A pair's poses are written first, then its row, each to the device ([`part`]). A batch that is killed goes on with
-//! the pairs that lack one of them. [`merge`] puts the pairs of all shards in the order of the table: the same bytes for
-//! any number of shards.
+//! the pairs that lack one of them. [`merge`] puts the pairs of all shards in the order of the table. The bytes are the
+//! same for any number of shards.
 
 use std::fmt;
 use std::str::FromStr;

@@ -262,7 +262,7 @@ mod tests {
         }
     }
 
-    /// Wherever a table is cut, the rows before that place are found, and what is added follows them.
+    /// Wherever a table is cut, the rows before that place are found, and rows that are added follow them.
     #[test]
     fn whole_rows_are_found_in_what_is_left() {
         let own = ["x", "y"]

@@ -1,8 +1,8 @@
 //! The file of poses: text packed by gzip, one member per pair, with the same columns for all pairs. All readers of
 //! gzip take the members as one text.
 //!
-//! CSV packed by gzip was chosen over Parquet: the crates `parquet` and `arrow` would double what the program is built
-//! of, and a Parquet file ends in an index, so that none can be appended to. Members of gzip can be appended, cut and
+//! CSV packed by gzip was chosen over Parquet: the crates `parquet` and `arrow` would double the dependencies of the
+//! program, and a Parquet file ends in an index, so nothing can be appended. Members of gzip can be appended, cut and
 //! put in another order without being unpacked.
 
 use std::fs::File;

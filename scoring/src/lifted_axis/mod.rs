@@ -95,7 +95,8 @@ impl LiftedAxis {
     }
 
     /// Largest error of the series when cut after each mode, over radius sums and frequencies, relative to the largest
-    /// transform value: that of the kernel against its definition, or a tenth of the score's against the whole series.
+    /// transform value. It is the error of the kernel against its definition, or a tenth of the score's against the
+    /// whole series.
     fn errors(&self, kernel: &RankingKernel) -> Vec<f64> {
         let cone = kernel.cone();
         let frequencies: Vec<f64> = (0..=16)

@@ -1,4 +1,4 @@
-//! Energies against the definition, slopes against differences, and what descents find.
+//! Energies against the definition, slopes against differences, and the results of descents.
 
 use super::energy::STIFFNESS;
 use super::pair_list::PairList;
@@ -232,7 +232,7 @@ fn descents_end_in_optima() {
     assert!(many.unwrap().energy.total() <= one.unwrap().energy.total());
 }
 
-/// Where a ligand is the mould of a receptor, a pose some Å off finds its way back.
+/// If a ligand is the mould of a receptor, a pose some Å off returns to it.
 #[test]
 fn a_ligand_returns_to_its_mould() {
     let (receptor, _) = body(13.0, 1, [0.0; 3]);

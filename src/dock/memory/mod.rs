@@ -72,7 +72,7 @@ impl MemoryPlan {
         })
     }
 
-    /// Bytes that everything but rotations in flight takes beside what was held before.
+    /// Bytes that all but rotations in flight take beyond those held before.
     pub fn fixed(&self) -> u64 {
         self.sizes.fixed()
     }

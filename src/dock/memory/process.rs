@@ -23,7 +23,7 @@ pub fn held() -> Option<u64> {
     status("VmRSS:").filter(|_| !is_shared())
 }
 
-/// The most memory that the present run has held so far, in bytes: no less than what it holds now. `None` as of
+/// The most memory that the present run has held so far, in bytes: at least the memory that it holds now. `None` as of
 /// [`held`].
 pub fn peak_of_run() -> Option<u64> {
     let peak = peak().filter(|_| !is_shared())?;

@@ -1,4 +1,4 @@
-//! Memory of a run by stage: one formula each, of the sizes of what the stage makes, so that the plan follows the code.
+//! Memory of a run by stage: one formula each, of the sizes of the stage's results, so that the plan follows the code.
 //!
 //! A stage begins with the memory of the process when the run was planned: the program, the inputs and all made of them.
 
@@ -36,9 +36,9 @@ const TERM_TABLES: u64 = 2 << 20;
 const ATOM_WRITTEN: u64 = 1 << 8;
 /// Bytes of a peak.
 const PEAK: u64 = size_of::<Peak>() as u64;
-/// Bytes of a pose when its table is made, which is when it takes the most: as a candidate, in its cluster (which one,
-/// whether it is distinct, and of each cluster size, weight, centre and place), and as a row, of which sorting takes half
-/// again.
+/// Bytes of a pose when its table is made, which is when it takes the most. They are those of a candidate, of its
+/// cluster (which one, whether it is distinct, and size, weight, centre and place of each cluster), and of a row.
+/// Sorting rows takes half again.
 const RANKED: u64 = (size_of::<Candidate>()
     + 10 * size_of::<usize>()
     + (size_of::<RankedPose>() + size_of::<usize>()) * 3 / 2) as u64;
@@ -131,7 +131,7 @@ impl Sizes {
         largest(self.stages(0)).1.saturating_sub(self.held)
     }
 
-    /// Bytes of the run's largest stage.
+    /// Bytes of the largest stage.
     pub fn peak(&self, rotations: usize) -> u64 {
         self.largest(rotations).1
     }

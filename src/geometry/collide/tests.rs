@@ -363,8 +363,8 @@ fn shared_volume_of_two_balls_is_the_lens() {
     assert_eq!(volume(1.9, None).value, 0.0);
 }
 
-/// A translation lies in the obstacle where collide finds a hit, and only there: two ways to one question (eq. 29 and
-/// 50), of 10,000 poses at 20 rotations, inner and outer balls alike.
+/// A translation is in the obstacle if collide finds a hit, and only then: two ways to one question (eq. 29 and 50),
+/// over 10,000 poses at 20 rotations, for inner and outer balls.
 #[test]
 fn the_obstacle_agrees_with_the_verdicts() {
     let (block, other) = (

@@ -11,8 +11,8 @@ use super::fault::point;
 
 /// A file to which entries are appended, each to the device before the next.
 ///
-/// An entry that is cut short, by a kill or a full disk, is no entry: the next caller opens the file at the end of the last
-/// whole one, and the rest is cut off.
+/// An entry that is cut short, by a kill or a full disk, is no entry. The next caller opens the file at the end of the
+/// last whole one, and the rest is cut off.
 #[derive(Debug)]
 pub struct AppendedFile {
     file: File,

@@ -117,7 +117,7 @@ fn write_part(
 mod tests {
     use super::*;
 
-    /// The file holds both parts, and the ligand's vertices are the pose's images of its own.
+    /// The file holds both parts, and the ligand's vertices are the images of its mesh under the pose.
     #[test]
     fn the_parts_are_groups_and_the_ligand_is_in_its_place() {
         let corners = [

@@ -67,8 +67,8 @@ pub fn file_names(rank: usize) -> [String; 3] {
 }
 
 /// Writes the complexes of `rows` into a staging folder as `rank_0001.pdb` ...; as `.cif` when one of the inputs was
-/// mmCIF or a complex does not fit the PDB format, or in the format that is `wanted`. Of a ring all copies are written.
-/// `note` follows the rank in the remarks.
+/// mmCIF or a complex does not fit the PDB format, or in the format that is `wanted`. For a ring all copies are
+/// written. `note` follows the rank in the remarks.
 ///
 /// # Errors
 /// [`Error`] when the folder cannot be made, a file is there or cannot be written, or a row's pose is not one of

@@ -1,9 +1,9 @@
 //! Faults on purpose: a run ends, or a change of the disk fails, at a chosen change. For tests of crashes.
 //!
-//! Only builds with debug assertions have them. The variable `KNOTDOCK_FAULT` names the fault: `kill N` ends the
-//! process at change N, counted from 1, as a kill would; `fail N` lets change N fail as a full disk would; `panic N` lets
-//! the program fail there.
-//! `KNOTDOCK_FAULT_LOG` names a file to which each change adds a line: its kind, a tab and its path.
+//! Only builds with debug assertions have them. The variable `KNOTDOCK_FAULT` names the fault. `kill N` ends the
+//! process at change N, counted from 1, as a kill would. `fail N` lets change N fail as a full disk would. `panic N`
+//! lets the program fail there. `KNOTDOCK_FAULT_LOG` names a file to which each change adds a line: its kind, a tab and
+//! its path.
 
 use std::fs::File;
 use std::io::{self, Write};

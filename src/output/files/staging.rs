@@ -285,7 +285,7 @@ fn holds_current(place: &Path) -> bool {
     current.is_ok_and(|current| current.starts_with(place))
 }
 
-/// Refuses a directory that is not a run's, and one of a run unless `force` is true; returns the files of the run.
+/// Refuses a directory without a run, and one with a run unless `force` is true; returns the files of the run.
 fn refuse(
     record: &str,
     directory: &Path,

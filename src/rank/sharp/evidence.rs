@@ -1,4 +1,4 @@
-//! Whether an exact fit stands out from the background of its own run.
+//! Whether an exact fit stands out from the background of the run.
 //!
 //! Every place that a run tries has an optimum, and the energies of wrong places are alike: they are its background.
 //! The margin of the best place is its distance below the middle of the others, in standard deviations. These follow

@@ -99,7 +99,7 @@ fn entangled_components_are_improved() {
     assert!(lowered > 60, "{lowered}");
 }
 
-/// Of equal states the present one stays, and sites that share no energy are components of their own.
+/// Among equal states the present one stays, and sites that share no energy are separate components.
 #[test]
 fn ties_keep_the_present_state() {
     let problem = Problem {

@@ -11,7 +11,8 @@
 //!   both.
 //! - **Broken block.** A block broken along four planes that meet in a point off its middle. No part has a symmetry.
 //! - **Saddle block.** A block cut along a smooth saddle. No part has a symmetry.
-//! - **Studded plates.** Two plates, one with two studs and a dent, the other with what fits. No part has a symmetry.
+//! - **Studded plates.** Two plates, one with two studs and a dent, the other with their counterparts. No part has a
+//!   symmetry.
 
 use std::f64::consts::PI;
 

@@ -535,8 +535,8 @@ mod tests {
         assert!((found.first - ball_volume(1.5)).abs() < found.error);
     }
 
-    /// Balls that meet none of their own union share one lens with each of the other. On a lattice, at poses of high
-    /// symmetry, planes coincide and meet in one point.
+    /// A ball that meets no other ball of its union shares one lens with each ball of the other union. On a lattice, at
+    /// poses of high symmetry, planes coincide and meet in one point.
     #[test]
     fn unions_of_separate_balls_share_lenses() {
         let mut random = random();

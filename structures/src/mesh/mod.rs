@@ -7,8 +7,8 @@
 //!   positive.
 //! - Lines are counted from 1.
 //! - The **solid** S of a mesh is the set of points with a generalised winding number above one half. It is the
-//!   inside of a closed mesh, the union of overlapping parts, and a smooth guess at what an open mesh was meant to
-//!   bound.
+//!   inside of a closed mesh, the union of overlapping parts, and a smooth guess at the solid that an open mesh was
+//!   meant to bound.
 //!
 //! # From file to solid
 //!

@@ -8,7 +8,7 @@ use crate::mesh::read::MeshFormat;
 use crate::mesh::triangle_mesh::{Mesh, doubled_normal};
 use crate::vector::{add, norm};
 
-/// What was read, and what is amiss with it.
+/// Counts of the mesh that was read, and its faults.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct MeshReport {
     /// Format of the file; none for a mesh made in memory.

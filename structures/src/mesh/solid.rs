@@ -223,8 +223,8 @@ impl Solid {
     }
 }
 
-/// The point of a triangle that is nearest to another point: a corner, a point of a side or one within, by the region
-/// that the other point is in (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
+/// The point of a triangle that is nearest to another point: a corner, a point of a side or one within. The region that
+/// the other point is in decides (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
 fn nearest_on([a, b, c]: [[f64; 3]; 3], point: [f64; 3]) -> [f64; 3] {
     let [ab, ac, bc] = [subtract(b, a), subtract(c, a), subtract(c, b)];
     let [from_a, from_b, from_c] = [a, b, c].map(|corner| subtract(point, corner));

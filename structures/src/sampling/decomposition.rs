@@ -13,12 +13,13 @@
 //! - *The queue cannot run dry too early.* With the above and mu <= 1, a struck node is covered:
 //!   |x - x'| <= r(x) - (1 - mu) r(x').
 //! - *One ball, not a union.* The paper's eq. 57 drops a ball in the union of the other grown balls. Its listing, its
-//!   proof of Proposition 3 and this code drop one in a single other: a stricter test, which keeps more balls.
-//! - *Kept, and the largest first.* The listing drops a ball in any grown ball, even in its own, and chains of balls
-//!   each of which is in the next, so that nothing need be left near the first.
-//! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false where the node nearest
-//!   to x lies outside S. Under a flat face just below a plane of nodes X ends sqrt(2) eps away. Its Propositions 1
-//!   to 3 rest on it.
+//!   proof of Proposition 3 and this code drop a ball only if it is in a single other one: a stricter test, which keeps
+//!   more balls.
+//! - *Kept, and the largest first.* The listing drops a ball in any grown ball, even in its own. It also drops chains
+//!   of balls each of which is in the next, so that nothing need be left near the first.
+//! - *The surface is covered too.* Lemma 4 of the paper, d(x, X) <= eps for x in S, is false if the node nearest to x
+//!   is outside S. Under a flat face just below a plane of nodes X ends sqrt(2) eps away. Its Propositions 1 to 3 rest
+//!   on it.
 //!
 //! Let S(A) be the union of the balls. For a closed mesh then S(A1) in S in S(A2), and S(A1) in S(A3) in S(A2). Each
 //! is within eps of S in the Hausdorff distance of solids. [`super::hausdorff`] measures it.
@@ -222,8 +223,8 @@ mod tests {
         }
     }
 
-    /// As printed, step 3 drops every ball, since each lies in its own growth. Of a chain in which each ball lies in
-    /// the next one's growth it keeps only the last, so that nothing is left near the first.
+    /// As printed, step 3 drops every ball, since each is in its own growth. If each ball of a chain is in the growth
+    /// of the next one, it keeps only the last, so that nothing is left near the first.
     #[test]
     fn what_is_dropped_lies_in_a_ball_that_is_kept() {
         let epsilon = 0.1;

@@ -166,7 +166,7 @@ impl DepthField {
 
     /// The depth that a function gives, rows in parallel.
     ///
-    /// `depth_within(point, most)` is the depth at a point, or `most` if it is more than that: the depths of two points
+    /// `depth_within(point, most)` is the depth at a point, or `most` if it is more than that. The depths of two points
     /// differ by the length between them at most, so that each bounds the next one.
     pub fn of_depth(grid: Grid, depth_within: impl Fn([f64; 3], f64) -> f64 + Sync) -> Self {
         let h = grid.spacing();

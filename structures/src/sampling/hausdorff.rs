@@ -4,7 +4,7 @@
 //! the surface spaced by eps / 10 at most, and over the inside points of a grid of 8 m points. The grid is every node
 //! moved by a quarter of the spacing in each of the eight directions. Samples with nothing of the solid on either
 //! side are not points of it. A point between samples may be farther, so the distance measured is a lower bound. The
-//! upper one holds for closed meshes: the cells about the grid's points are halved until each is outside the solid or
+//! upper one holds for closed meshes. The cells about the grid's points are halved until each is outside the solid, or
 //! its middle is so near to the balls that none of its points is farther.
 //!
 //! *Outward*, from S(A) to S: the farthest that a point of the balls is from the solid. It is taken over the same

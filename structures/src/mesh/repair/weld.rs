@@ -1,7 +1,7 @@
 //! Vertices at one place made one vertex, so that triangles share edges.
 //!
 //! 1. Vertices within [`WELD_TOLERANCE`] become one: copies with the same digits.
-//! 2. Seams that are left open are joined within the rounding of the file's numbers ([`rounding`]): programs that mesh
+//! 2. Seams that are left open are joined within the rounding of the file's numbers ([`rounding`]). Programs that mesh
 //!    each face of a body by itself, or that move a part after meshing it, round the two copies of a vertex
 //!    differently. Only ends of open edges (of one face alone) are joined, so a closed mesh stays as it is, however
 //!    thin.

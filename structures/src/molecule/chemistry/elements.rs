@@ -13,7 +13,7 @@ pub(crate) struct Element {
     /// Symbol as in the periodic table; `D` for deuterium.
     symbol: &'static str,
     kind: ElementKind,
-    /// Radius of an atom beside whose kind hydrogens are atoms of their own, in Å.
+    /// Radius in Å of an atom whose hydrogens are separate atoms.
     pub(crate) radius: Option<f64>,
     /// Equilibrium distance of UFF, in Å.
     pub(crate) distance: Option<f64>,

@@ -206,7 +206,7 @@ mod tests {
         }
     }
 
-    /// A backbone along x, 3.8 Å a residue: C and the next N are 1.3 Å apart.
+    /// A backbone along x, 3.8 Å per residue: C and the next N are at a distance of 1.3 Å.
     fn chain(residues: &[(&str, i64)]) -> Vec<Atom> {
         let place = |k: usize, x: f64| [3.8 * k as f64 + x, 0.0, 0.0];
         residues

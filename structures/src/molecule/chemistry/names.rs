@@ -1,16 +1,15 @@
 //! Names of atoms and residues: those of force fields and old files as the wwPDB has them today.
 //!
-//! Amino acids come under other names than the tables have: D-amino acids, names of force fields, names for the termini.
-//! A residue is what its atoms make it:
+//! Amino acids come under other names than the tables have: D-amino acids, names of force fields, names for the
+//! termini. The atoms of a residue decide its kind:
 //!
 //! - A name of the tables (`ALA`, `HIE`, `CYX`, ...) keeps its meaning, and so does that of a modified residue whose
 //!   charges are known.
-//! - A name that says which amino acid it stands for (D-amino acids of the wwPDB; GROMOS's and AMBER's names, those of
-//!   the termini included) is read so if no atom contradicts, with the charge state that it says:
-//!   `ASPH` is neutral.
+//! - A name that states its amino acid (D-amino acids of the wwPDB; GROMOS's and AMBER's names, those of the termini
+//!   included) is read so if no atom contradicts. Its charge state is taken too: `ASPH` is neutral.
 //! - Under any other name a residue with exactly a standard residue's heavy atoms is that residue. The wwPDB gives
-//!   names of their own to molecules with the same atom names that are something else (norvaline has proline's); the
-//!   table has those, and they stay as they are.
+//!   separate names to other molecules with the same atom names (norvaline has proline's); the table has those, and
+//!   they stay as they are.
 //!
 //! Hydrogens and sites without mass do not count. D- and L-amino acids have the same radii, charges and contact types
 //! here.

@@ -44,7 +44,7 @@ pub(crate) fn radius(residue_name: &str, atom_name: &str, element: &str, kind: G
         .map_or_else(|| of_element(element), |class| class.radius)
 }
 
-/// Radius of an atom beside whose kind hydrogens are atoms of their own, in Å.
+/// Radius in Å of an atom whose hydrogens are separate atoms.
 pub(crate) fn all_atom_radius(symbol: &str) -> f64 {
     of_element(if is_hydrogen(symbol) { "H" } else { symbol })
 }

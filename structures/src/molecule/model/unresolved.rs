@@ -128,7 +128,7 @@ const MAX_TRIALS: usize = 5000;
 const GIVE_UP_AFTER: [usize; 2] = [100, 1000];
 
 /// Distance in Å by which a residue brings a loop towards its target at most, and that of the last CA from the target.
-/// Straight chains, with 3.8 Å a residue, close no gap.
+/// Straight chains, with 3.8 Å per residue, close no gap.
 const CLOSING: f64 = 3.6;
 const CLOSED: f64 = 2.9;
 

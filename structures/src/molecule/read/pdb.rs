@@ -243,7 +243,7 @@ fn check_columns(line: usize, record: &str) -> Result<(), Error> {
     Ok(())
 }
 
-/// Writes the record that pdbtbx reads: the columns that it is sure to read, with what it needs not know left out.
+/// Writes the record that pdbtbx reads: the columns that it is sure to read, without those that it does not need.
 ///
 /// For each atom it goes through all chains and residues that it has, so it sees few. Carbon is the element that it
 /// finds fastest.

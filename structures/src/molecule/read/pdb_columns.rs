@@ -217,7 +217,7 @@ const GROMOS_VARIANTS: [&str; 14] = [
     "HISH", "LYSH",
 ];
 
-/// Whether columns 18-20 spell a residue, and with the next letter they do not.
+/// Whether columns 18-20 spell a residue, and columns 18-21 do not.
 fn is_known_with_three(three: &str, four: &str) -> bool {
     is_known(three) && !is_known(four) && !GROMOS_VARIANTS.contains(&four)
 }
@@ -280,8 +280,8 @@ const AUTODOCK_TYPES: [(&str, &str); 9] = [
 
 /// The element as the record has it, in columns 77-78; may be empty or nonsense.
 ///
-/// PDBQT is PDB with a partial charge in columns 71-76 and an atom type after it (AutoDock 4.2 User Guide). Chlorine and
-/// the metals have types of two letters, of which columns 77-78 hold but the first.
+/// PDBQT is PDB with a partial charge in columns 71-76 and an atom type after it (AutoDock 4.2 User Guide). Chlorine
+/// and the metals have types of two letters, and columns 77-78 hold only the first.
 pub(crate) fn element(record: &str) -> &str {
     if !has_partial_charge(record) {
         return columns(record, 76, 78).trim();

@@ -411,7 +411,7 @@ mod tests {
         );
     }
 
-    /// Atoms without places of their own must not cost the square of their number.
+    /// Atoms that share one place must not cost the square of their number.
     #[test]
     fn many_atoms_in_one_place_take_no_longer_than_others() {
         let mut atoms = chain("A", "ALA", 1..20_001, 0.0);

@@ -29,7 +29,7 @@ fn without_a_loop() -> (Molecule, Vec<[f64; 3]>) {
     (molecule, alphas.map(|atom| atom.position).collect())
 }
 
-/// Trypsin's first N has a pocket of its own, and nothing can go on from it.
+/// Trypsin's first N is in a pocket, and nothing can go on from it.
 #[test]
 fn conformers_go_on_from_an_end_that_has_room() {
     let molecule = trypsin();
@@ -42,7 +42,7 @@ fn conformers_go_on_from_an_end_that_has_room() {
     }
 }
 
-/// What makes a conformer a chain that has room: its steps, its bends, and what it keeps clear of.
+/// A conformer is a chain that has room, by its steps, its bends and its clearances.
 #[test]
 fn conformers_are_chains_that_have_room() {
     let (molecule, _) = without_a_loop();
