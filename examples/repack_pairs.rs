@@ -1,9 +1,9 @@
 //! Packs interface side chains of pairs whose answer is known, and measures them against the bound ones:
 //! `cargo run --release --example repack_pairs -- FOLDER ID...`.
 //!
-//! FOLDER holds a folder a pair with `receptor_unbound`, `ligand_unbound`, `receptor_bound` and `ligand_bound`
-//! (`.pdb.gz`), the unbound files superposed on the bound ones, residue numbers matched. A row of CSV a pair, and one
-//! of all pairs together:
+//! FOLDER holds one folder per pair with `receptor_unbound`, `ligand_unbound`, `receptor_bound` and `ligand_bound`
+//! (`.pdb.gz`), the unbound files superposed on the bound ones, residue numbers matched. The output is one row of CSV
+//! per pair, and one of all pairs together:
 //!
 //! - `residues`: side chains with chi angles that in the bound complex have an atom within 6 Å of the other molecule,
 //!   complete in both;

@@ -129,7 +129,7 @@ def first_ranks(qualities):
 
 
 def log_rank(rank):
-    """Logarithm of a rank; None and infinity stand for what was not found."""
+    """Logarithm of a rank; None and infinity are ranks of poses that were not found."""
     return math.log(min(rank or math.inf, NOT_FOUND))
 
 

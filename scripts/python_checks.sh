@@ -50,7 +50,7 @@ else
     chmod +x "$venv/bin/knotdock"
     program=$target/debug/knotdock
 fi
-# Away from the package's source, so that what is installed is what is tested.
+# Away from the package's source, so that the installed package is the tested one.
 root=$PWD tests=$PWD/python/tests package=$PWD/python/knotdock
 cd "$target/python"
 PATH=$venv/bin:$PATH

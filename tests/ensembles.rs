@@ -215,7 +215,7 @@ fn a_stopped_ensemble_goes_on() {
     assert_eq!(again("").status.code(), Some(2));
     assert!(again("--force").status.success());
     assert_eq!(comparable(&directory), whole);
-    // One with a file of the user's is not, wherever that is, done or begun.
+    // One with a user's file is not, wherever that is, finished or started.
     let notes = directory.join("members/r1_l2/notes.txt");
     fs::write(&notes, "mine").unwrap();
     let refused = again("--force");

@@ -21,7 +21,7 @@ class KnotdockWarning(UserWarning):
 
 
 class Listener:
-    """Hears what a command says: warnings become Python's, failures of parts are collected."""
+    """Receives the messages of a command: warnings become Python's, failures of parts are collected."""
 
     def __init__(self, progress: bool | None) -> None:
         self._bar = ProgressBar(progress)

@@ -16,7 +16,7 @@ from knotdock.errors import InputError
 
 __all__ = ["given"]
 
-# The ends of mmCIF files: what a text has that is no PDB file.
+# Marks of mmCIF files, which no PDB file has.
 _CIF = ("data_", "_atom_site.", "loop_")
 
 

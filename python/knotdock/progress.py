@@ -37,7 +37,7 @@ class ProgressBar:
             self._bar = self._tqdm(total=total, desc=name, leave=False)
 
     def advance(self, steps: int) -> None:
-        """Note that so many steps more are done."""
+        """Note the number of further steps that are done."""
         if self._bar is not None:
             self._bar.update(steps)
 

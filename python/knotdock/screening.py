@@ -31,7 +31,7 @@ _COUNTS = (
     "restraints_met",
     "first_acceptable_rank",
 )
-# Pairs of a shard where their number is not given: some minutes of work on one core.
+# Pairs per shard if their number is not given: some minutes of work on one core.
 _PAIRS_A_SHARD = 50
 
 

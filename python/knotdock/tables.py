@@ -27,7 +27,7 @@ def read_table(path: str | os.PathLike[str] | io.StringIO, frame: Frame = "panda
     if frame == "pandas":
         import pandas
 
-        # Before pandas 3 the last digits of numbers were not read as they stand.
+        # Before pandas 3 the last digits of numbers were not read exactly.
         is_old = int(pandas.__version__.split(".")[0]) < 3
         precise = {"float_precision": "round_trip"} if is_old else {}
         table = pandas.read_csv(path, keep_default_na=False, na_values=[""], **precise)

@@ -56,7 +56,7 @@ def test_a_screen_on_a_cluster_makes_the_same_table(pairs, tmp_path, monkeypatch
         done = knotdock.screen(pairs, client, output=place, dock=DOCK, rows=5, shards=3)
         assert (done["pairs"], done["done"], done["failed"]) == (4, 3, 1)
         parts = {path: path.stat().st_mtime_ns for path in place.glob("*/*.parquet")}
-        # Nothing is done again, but what is missing.
+        # Only missing pairs are done again.
         missing = place / "poses" / "part-0002-of-0003.parquet"
         missing.unlink()
         again = knotdock.screen(pairs, client, output=place, dock=DOCK, rows=5)

@@ -1,4 +1,4 @@
-"""Docking from Python gives what the command line gives."""
+"""Docking from Python gives the same results as the command line."""
 
 import os
 import pathlib

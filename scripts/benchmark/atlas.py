@@ -111,7 +111,7 @@ def table(points):
 
 
 def picture(points, path):
-    """A panel for each depth, and the key below them; a setting's number stands beside its point."""
+    """A panel for each depth, and the key below them; a setting's number is beside its point."""
     names = list(dict.fromkeys(p["name"] for p in points if p["set"] != "MEGADOCK"))
     figure, panels = plt.subplots(2, 2, figsize=(9, 9), layout="constrained")
     for index, (panel, depth) in enumerate(zip(panels.flat, DEPTHS)):

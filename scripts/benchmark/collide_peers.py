@@ -7,7 +7,7 @@ Needs coal, numpy and trimesh (scripts/checks/requirements_solids.txt). Columns 
 The table has a row for every pose taken: its number, whether the surfaces meet, their distance, and the microseconds of
 a collision, of a distance, and of a collision with all contacts; each the least of a few runs.
 
-A call from Python adds about a microsecond, which is in the times; what the empty call takes is printed.
+A call from Python adds about a microsecond, which is in the times; the time of the empty call is printed.
 """
 
 import argparse
@@ -33,7 +33,7 @@ def tree(path):
 
 
 def least(runs, task):
-    """Microseconds of the fastest run, and what the last one gave."""
+    """Microseconds of the fastest run, and the result of the last one."""
     best = float("inf")
     for _ in range(runs):
         start = time.perf_counter_ns()

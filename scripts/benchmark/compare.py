@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""Compares benchmark runs with different settings: success, what each setting gains on the first one, and its cost.
+"""Compares benchmark runs with different settings: success, the gain of each setting over the first one, and its cost.
 
     python3 scripts/benchmark/compare.py shape=runs/shape all=runs/fold0,runs/fold1 ... [--ranking poses]
 

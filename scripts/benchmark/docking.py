@@ -1,4 +1,4 @@
-"""How the benchmark scripts dock: options after `--`, a random start orientation, and what a run cost.
+"""How the benchmark scripts dock: options after `--`, a random start orientation, and the cost of a run.
 
 Imported by benchmark.py and rings.py.
 """

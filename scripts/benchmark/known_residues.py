@@ -33,7 +33,7 @@ def active_residues(texts, name, seed, count):
 
 
 def chains_by_number(rows, what):
-    """The chain of each residue number; a number that stands in several chains is refused."""
+    """The chain of each residue number; a number that is in several chains is refused."""
     chains = {}
     for chain, number, _ in rows:
         if chains.setdefault(number, chain) != chain:
@@ -58,7 +58,7 @@ def atoms(text):
 
 
 def residues_within(own, others):
-    """Numbers of the residues of which an atom lies within CONTACT of one of the others."""
+    """Numbers of the residues with an atom within CONTACT of one of the others."""
     cells = defaultdict(list)
     for _, _, position in others:
         cells[tuple(int(x // CONTACT) for x in position)].append(position)

@@ -103,7 +103,7 @@ def dock(options, ring, seed, with_symmetry):
         sides = [f"{path}:{','.join(side)}" for side in rings]
         native = ["--native-receptor", sides[0], "--native-ligand", sides[1]]
     else:
-        # Neighbours of a ring stand to each other as the first two do.
+        # Any neighbours of a ring are placed relative to each other as the first two are.
         docked = rings[0][:1]
         native = ["--native", f"{path}:{','.join(rings[0][:2])}"]
     folder = options.out / f"{re.sub('[ ,]', '_', name_of(ring))}_{seed}"

@@ -33,7 +33,7 @@ POSSIBLE = re.compile(r"\.?\s*\[possible values: ([^\]]*)\]")
 
 @dataclass
 class Entry:
-    """An argument or option: its name with its value, what it does, and its default."""
+    """An argument or option: its name with its value, its meaning, and its default."""
 
     name: str
     meaning: str
@@ -133,7 +133,7 @@ def read(program: Path, words: list[str]) -> Command:
 
 
 def read_command(command: Command, subject: str, line: str) -> None:
-    """A line of a list of commands: a command with what it does, or more of that."""
+    """A line of a list of commands: a command with its description, or more of the description."""
     begun = re.match(r"  (\S+) +(.*)", line)
     if begun:
         command.commands[begun[1]] = begun[2]
@@ -282,7 +282,7 @@ def compare(what: str, real: set[str], page: set[str], maybe: frozenset[str] = f
 
 
 def run_example(program: Path, folder: Path) -> tuple[set[str], dict[str, object]]:
-    """Columns of poses.csv and the record of a run of the example, of columns those of a run with distances too."""
+    """Columns of poses.csv, also those of a run with distances, and the record of a run of the example."""
     pairs = folder / "pairs.csv"
     pairs.write_text("receptor,ligand,upper\nA:189,B:5,8\n")
     predicted = folder / "predicted.csv"
@@ -308,7 +308,7 @@ def run_example(program: Path, folder: Path) -> tuple[set[str], dict[str, object
 
 
 def check_files(program: Path) -> list[str]:
-    """What the pages of poses.csv and run.json lack, and what they have too much."""
+    """Entries that the pages of poses.csv and run.json lack, and entries that they should not have."""
     with tempfile.TemporaryDirectory() as folder:
         columns, record = run_example(program, Path(folder))
     pages = described(REFERENCE / "poses_csv.md")

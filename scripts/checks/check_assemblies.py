@@ -31,7 +31,7 @@ EQUAL, ON_AXIS = 0.01, 0.51
 
 
 def built(knotdock, path, name, table):
-    """Positions by atom of an assembly as knotdock builds it, and what it says of it."""
+    """Positions by atom of an assembly as knotdock builds it, and the messages about it."""
     command = [
         knotdock,
         "inspect",

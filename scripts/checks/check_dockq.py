@@ -224,7 +224,7 @@ def poses_about(native_rotation, native_translation, ligand_center, receptor_cen
 
 
 def knotdock_values(arguments, poses, folder):
-    """Runs `knotdock evaluate` on the poses; one dictionary a pose, in order."""
+    """Runs `knotdock evaluate` on the poses; one dictionary per pose, in order."""
     path = Path(folder) / "poses.csv"
     with open(path, "w", newline="") as file:
         writer = csv.writer(file, lineterminator="\n")

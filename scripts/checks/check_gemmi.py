@@ -12,7 +12,7 @@ For every file `knotdock inspect --atoms` must exit with 0, or with 2 and name f
 atoms, both must have the same atoms in the first model: names, residues, chains, numbers, insertion codes, alternate
 locations, coordinates, occupancies and temperature factors. Gemmi's are then sorted by the same rules (no waters, no
 known additives, no hydrogens, one alternate location a residue), and both must keep the same, with the same elements.
-Differences that are intended stand in MEANT, each with its reason, and are counted.
+Intended differences are in MEANT, each with its reason, and are counted.
 
 Exit code 0: nothing else differs; 1: something does; 2: the check could not be made.
 """
@@ -140,7 +140,7 @@ def theirs(path):
     if len(structure) == 0:
         return None, "no model"
     is_pdb = structure.input_format == gemmi.CoorFormat.Pdb
-    # Segids are the chains of a file without any.
+    # Segids are the chains of a file without chains.
     by_segid = is_pdb and not any(chain.name.strip() for model in structure for chain in model)
     rows = []
     for chain in structure[0]:

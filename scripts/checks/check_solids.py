@@ -69,7 +69,7 @@ def answers(program, pair, poses, folder, options):
 
 
 def contradictions(row, exact, band, size):
-    """What of a row the exact answer contradicts."""
+    """Entries of a row that the exact answer contradicts."""
     near = TOLERANCE * size
     verdict, low, high = row["verdict"], float(row["distance_low"]), float(row["distance_high"])
     # What touches by less than rounding is nobody's fault.

@@ -1,4 +1,5 @@
-"""Exact answers on solids by other programs: whether two meshes at a pose share points, in what volume, how far apart.
+"""Exact answers on solids by other programs: whether two meshes at a pose share points, the shared volume, and the
+distance.
 
 coal (PyPI) measures the distance of the surfaces. Manifold (PyPI manifold3d) measures the volume that the solids share,
 so that a solid within another is a hit. trimesh makes the meshes. `prove` holds both to closed forms, without knotdock:
@@ -16,7 +17,7 @@ import trimesh
 
 @dataclass
 class Exact:
-    """What holds of two solids at a pose."""
+    """The exact answer for two solids at a pose."""
 
     hit: bool
     # Of the solids' surfaces; zero where these meet.
@@ -179,7 +180,7 @@ def prove(random):
     radii = [0.8, 0.5]
     meshes = [trimesh.creation.icosphere(4, radius) for radius in radii]
     balls = Pair("balls", *meshes)
-    # A mesh of corners on the sphere lies within it; its faces are at most this far in.
+    # A mesh of corners on the sphere is within it; its faces are at most this far in.
     deep = sum(radius - np.linalg.norm(mesh.triangles_center, axis=1).min() for radius, mesh in zip(radii, meshes))
     for _ in range(200):
         turn, away = rotation(random), random.normal(size=3)

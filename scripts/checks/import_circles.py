@@ -56,7 +56,7 @@ def leaves(tree, prefix=()):
 
 
 class Crate:
-    """Modules of a crate, and what each imports of the others."""
+    """Modules of a crate, and the imports of each from the others."""
 
     def __init__(self, name, folder):
         self.name, self.files, self.reexports, self.texts = name, {}, {}, {}

@@ -120,7 +120,7 @@ def prism(outline, height):
 
 
 def write_inputs(folder, pairs):
-    """Writes a block with a groove, a key that fits into it and lies elsewhere, its path, and a table of pairs."""
+    """Writes a block with a groove, a key that fits into it and is elsewhere, its path, and a table of pairs."""
     folder.mkdir(parents=True, exist_ok=True)
     block = prism([(0, 0), (6, 0), (6, 4), (4, 4), (3.4, 2), (2.2, 2), (2, 4), (0, 4)], 3)
     key = prism([(9, 1), (10, 1), (10.5, 2.8), (10.5, 4), (9, 4)], 2.8)

@@ -67,7 +67,7 @@ def one_trial(settings, place, number):
             promise.trial(trial)
         except Skipped as why:
             outcome.skipped = str(why)
-        except Exception:  # a trial that breaks off has not shown what is promised
+        except Exception:  # a trial that breaks off has not shown the promise
             trial.failures.append(traceback.format_exc(limit=-3))
     outcome.failures, outcome.commands = trial.failures, trial.commands
     outcome.seconds = time.monotonic() - began
@@ -107,7 +107,7 @@ def in_turn(chosen):
 def run_trials(settings, chosen, jobs, minutes):
     """Rows of the promises, each a place in the list and numbers of trials, and how many were left out.
 
-    Failures are printed as they come. When so many minutes have passed no further trial starts.
+    Failures are printed as they come. When the given minutes have passed no further trial starts.
     """
     rows = {place: Row(PROMISES[place].name, *PROMISES[place].words) for place, _ in chosen}
     end, left_out = time.monotonic() + 60 * minutes, 0
@@ -144,7 +144,7 @@ def markdown(rows):
 
 
 def write_into_page(path, table):
-    """Replaces what stands between the two markers of a page."""
+    """Replaces the text between the two markers of a page."""
     page = path.read_text()
     if BEGIN not in page or END not in page:
         sys.exit(f"trust: {path} has no lines {BEGIN} and {END}")

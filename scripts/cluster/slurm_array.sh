@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Dock the pairs of a table as an array of Slurm, one task a shard.
+# Dock the pairs of a table as an array of Slurm, one task per shard.
 #
 # usage: sbatch --array=1-SHARDS slurm_array.sh SHARDS PAIRS.csv DIR [options of knotdock dock]
 #

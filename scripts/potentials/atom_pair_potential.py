@@ -21,7 +21,7 @@ p is the share of a kind, x^B y^(1 - B), with B the --burial:
   707-726). Energies then also say how buried a kind is.
 - y, the share among all partners of pairs (quasi-chemical approximation, Miyazawa & Jernigan, J. Mol. Biol. 256 (1996)
   623-644). Energies then say only which kinds prefer each other.
-The core of a protein buries more than an interface does, so B lies between.
+The core of a protein buries more than an interface does, so B is between.
 
 Needs Python 3.9 or later and NumPy.
 """

@@ -15,7 +15,7 @@ m_ab are those of a reference state with as many contacts:
   Comeau & Vajda, Biophys. J. 95 (2008) 4217-4227). RUNS is the --out folder of a `benchmark.py` run with
   `-- --effects shape` on the same pairs; the poses of --ranks are taken.
 
-A pseudocount of --pseudocount expected contacts a pair of types tempers what is rare. The mean over all contacts of
+A pseudocount of --pseudocount expected contacts per pair of types tempers rare ones. The mean over all contacts of
 the reference state is taken out, so that the potential does not count shape again. Of the table's eigenvectors (types
 weighted by their share of the contacts) the strongest --rank are kept: each further one costs a transform in the
 search.

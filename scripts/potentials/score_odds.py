@@ -1,5 +1,5 @@
 #!/usr/bin/env python3
-"""How much pose score is worth a nat of evidence that a pose is acceptable.
+"""The pose score that equals one nat of evidence that a pose is acceptable.
 
     python3 scripts/potentials/score_odds.py DIR RUNS [RUNS ...]
 

@@ -6,7 +6,7 @@
 Builds `benches/nfft.rs`, installs finufft and numpy (and pyNFFT3, where it can be installed) from PyPI into a virtual
 environment of its own, and prints two tables in Markdown.
 
-Timed is what a user repeats for every new set of points; planning is left out:
+The steps that a user repeats for every new set of points are timed; planning is left out:
 
 - FINUFFT: setpts + execute of the plan interface.
 - Ours: locate_into + forward.
@@ -38,7 +38,7 @@ BAR = 1.3
 
 
 def enter_environment(folder):
-    """Re-runs this script by the Python of a virtual environment that has what it needs."""
+    """Re-runs this script by the Python of a virtual environment that has the packages."""
     python = Path(folder) / "bin" / "python"
     if not python.exists():
         venv.create(folder, with_pip=True)
@@ -280,7 +280,7 @@ def main():
     )
     show(rows, "finufft", "FINUFFT")
     show(rows, "nfft3", "NFFT3")
-    # Written so that what is no number is wrong.
+    # Written so that NaN is wrong.
     missed = [row for row in rows if not row["ours_error"] <= row["tolerance"]]
     missed += [row for row in rows if not row.get("agreement", 0) <= 2 * row["tolerance"] + row.get("finufft_error", 0)]
     slow = [row for row in rows if "finufft" in row and row["ours"][1] > BAR * row["finufft"][1]]

@@ -3,7 +3,7 @@
 
     python3 scripts/reference/hard_case_reference.py
 
-Prints the tables that stand in tests/hard_cases/, each under its name, in a minute. Needs mpmath (PyPI).
+Prints the tables in tests/hard_cases/, each under its name, in a minute. Needs mpmath (PyPI).
 
   bump         psi_a(x) = exp(1 / (1 - x^-a)) for x -> 0 and x -> 1, a -> 0 and a -> infinity
                (Behandish & Ilies, CAD 70, 2016, eq. 10)

@@ -175,7 +175,7 @@ class Random:
 
 
 def near(ligand, seed):
-    """A real ligand as it stands, and ten poses about that: rotated by up to 40 degrees, moved by up to 3 Å."""
+    """A real ligand at its place, and ten poses about that: rotated by up to 40 degrees, moved by up to 3 Å."""
     lines = [line for line in open(ligand) if line.startswith("ATOM")]
     middle = [sum(float(line[a : a + 8]) for line in lines) / len(lines) for a in (30, 38, 46)]
     random = Random(seed)

@@ -1,4 +1,4 @@
-//! Solids of meshes lie between their inner and their outer balls.
+//! Solids of meshes are between their inner and their outer balls.
 #![cfg(feature = "mesh")]
 
 use std::path::Path;

@@ -193,7 +193,8 @@ fn a_shard_that_is_ended_anywhere_goes_on() {
             points.push(point);
         }
     }
-    // Three pairs: each is begun, and has a row; two have poses; the tables have their first lines. All in two halves.
+    // Three pairs: each was started, and has a row; two have poses; the tables have their first lines. All in two
+    // halves.
     assert_eq!(log.matches("append").count(), 2 * (3 + 3 + 2 + 2));
     for (number, point) in points.iter().enumerate() {
         let (out, kind) = (

@@ -204,8 +204,8 @@ fn a_sharp_ball_rings_near_its_edge_only() {
 ///
 /// First failed at lambda = 100 and 1e3, at a tolerance of 1e-2, with errors of 1.2e-2: there the best score is a
 /// hundredth of the largest |G| instead of a twentieth. Then at lambda = 1 and thin skins, where the slices cancel to
-/// r0^2 of themselves: the lifted series was resolved for the kernel and not for that difference, and was off by up to
-/// 523 tolerances, which a bound of 1e-9 of the slices, nine times the best score, let pass.
+/// r0^2 of themselves. The lifted series was resolved for the kernel and not for that difference, and was off by up to
+/// 523 tolerances. A bound of 1e-9 of the slices, nine times the best score, let that pass.
 #[test]
 fn skins_lambdas_and_exponents_at_their_ends_meet_the_tolerance() {
     let (a, b) = (cloud(160, 12.0, &RADII, 1), cloud(60, 8.0, &RADII, 2));

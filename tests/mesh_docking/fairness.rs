@@ -64,7 +64,7 @@ fn together(a: &Knots, b: &Knots) -> Knots {
     .unwrap()
 }
 
-/// A block, and the same block as two halves that touch: the overlap with a probe is the same volume, to the error of
+/// A block, and the same block as two halves that touch. The overlap with a probe is the same volume, to the error of
 /// the fit, though the halves have other balls and more of them.
 #[test]
 fn a_solid_in_two_halves_overlaps_as_the_whole() {

@@ -10,7 +10,7 @@ fn turn(axis: &Unit<Vector3<f64>>, angle: f64, point: Vector3<f64>) -> Pose {
     Pose::about(UnitQuaternion::from_axis_angle(axis, angle), point, point)
 }
 
-/// Copies of a molecule at some poses, each with chain names of its own.
+/// Copies of a molecule at some poses, each with its own chain names.
 fn copies(molecule: &Molecule, poses: &[Pose]) -> Molecule {
     let copy = |(pose, names): (&Pose, [char; 2])| {
         let mut copy = molecule.map_positions(|position| pose.apply(position));

@@ -29,9 +29,9 @@ use knotdock_structures::{Ball, Error};
 
 /// Compute the obstacle of two solids: the translations of B at which it meets A, at one rotation or over many.
 ///
-/// A solid is a mesh, a molecule or a file of balls. The obstacle is A + (-R B), a union of balls again, a ball for each
-/// pair. Inner balls are in the true one and outer balls hold it. Free regions are the connected parts of what is left
-/// free in a padded box: more than one means that B is caged somewhere, or cannot get somewhere.
+/// A solid is a mesh, a molecule or a file of balls. The obstacle is A + (-R B), a union of balls again, a ball for
+/// each pair. Inner balls are in the true one and outer balls hold it. Free regions are the connected parts of the free
+/// space in a padded box: more than one means that B is caged somewhere, or cannot get somewhere.
 #[derive(Args, Debug)]
 pub struct Obstacle {
     /// The fixed solid; robot.yml:hand picks a link, FILE:H,L chains.

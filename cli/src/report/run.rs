@@ -5,10 +5,10 @@
 //! | `sides` | names of the two bodies |
 //! | `columns`, `rows` | the table: how each column is shown, and its fields |
 //! | `terms` | columns that add up to the pose score |
-//! | `placed` | of each row, what moves each placed body: qw, qx, qy, qz, tx, ty, tz |
+//! | `placed` | the motion of each placed body, per row: qw, qx, qy, qz, tx, ty, tz |
 //! | `bodies` | receptor and ligand: text of a structure, or vertices and triangles |
-//! | `contacts` | of each row a text, five numbers per pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
-//! | `shares` | of each side, clusters that touch each residue; `counted` of them were looked at |
+//! | `contacts` | one text per row, five numbers per pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
+//! | `shares` | clusters that touch each residue, per side; `counted` of them were examined |
 //! | `chains` | names of chains in complexes |
 
 use std::collections::HashMap;

@@ -4,7 +4,7 @@
 //!
 //! | file | what |
 //! |---|---|
-//! | `batch.json` | which pairs and options it is of ([`record`]) |
+//! | `batch.json` | the pairs and options of the batch ([`record`]) |
 //! | `results.csv` | one row per pair, in the order in which they were done until all are |
 //! | `poses.csv.gz` | the first poses of each pair: one gzip member per pair |
 //! | `attempts.csv` | the names of pairs that were started, so that a pair that ends the process is given up in the end |

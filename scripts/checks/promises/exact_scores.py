@@ -48,9 +48,9 @@ def pose_of(row):
 def docked_scores(trial):
     """Scores of poses.csv are the exact sum over pairs of balls, and its columns add up.
 
-    Random small molecules are docked. Shape, its three slices and the unfiltered score of each row are summed again
-    in Python and agree to 1e-8 of what is added up; search_score and pose_score are the sums of their terms, rows are
-    in the order of score, and quaternions have length 1.
+    Random small molecules are docked. Shape, its three slices and the unfiltered score of each row are summed again in
+    Python and agree to 1e-8 of the magnitudes that are added up; search_score and pose_score are the sums of their
+    terms, rows are in the order of score, and quaternions have length 1.
     """
     random_molecule(trial, "a.pdb")
     random_molecule(trial, "b.pdb")
@@ -106,7 +106,7 @@ def gradients(trial):
     """`knotdock score` gives the exact score of a pose, and its force is the score's derivative.
 
     Random poses of random small molecules near contact; shape and the force (by central differences of the sum in
-    Python) agree to 1e-8 and 1e-5 of what is added up.
+    Python) agree to 1e-8 and 1e-5 of the magnitudes that are added up.
     """
     random_molecule(trial, "a.pdb")
     random_molecule(trial, "b.pdb")
@@ -138,8 +138,8 @@ def gradients(trial):
 def distances(trial):
     """The ligand RMSD of `evaluate` is that of its definition, and other measures keep within their bounds.
 
-    Random poses beside a known complex in which the ligand is the smaller partner and lies as in its file: the RMSD
-    of its backbone is computed in Python. fnat, DockQ and the CAPRI class keep within their ranges.
+    Random poses beside a known complex in which the ligand is the smaller partner and is placed as in its file: the
+    RMSD of its backbone is computed in Python. fnat, DockQ and the CAPRI class keep within their ranges.
     """
     write_inputs(trial.folder)
     poses = [([1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 0.0])]

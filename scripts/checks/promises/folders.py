@@ -1,4 +1,4 @@
-"""What lies in a folder, byte for byte, and which of it belongs together."""
+"""Content of a folder, byte for byte, and which files belong together."""
 
 import ctypes
 import json
@@ -145,7 +145,7 @@ class Watch:
                 self.add(name)
 
     def read(self, seconds):
-        """Number of events since the last call, waiting for them no longer than so many seconds."""
+        """Number of events since the last call, waiting for them no longer than the given seconds."""
         if not select.select([self.file], [], [], seconds)[0]:
             return 0
         data, at, count = os.read(self.file, 65536), 0, 0
@@ -164,7 +164,7 @@ class Watch:
         return count
 
     def follow(self, process, until=None):
-        """Counts events until a program ends or there were so many of them; the number."""
+        """Counts events until a program ends or the given number is reached; the number."""
         count = 0
         while until is None or count < until:
             count += self.read(0.002)

@@ -146,9 +146,9 @@ CASES = {  # and the peak of resident memory that they may take
 def bounded_time(trial):
     """Inputs of a hostile size end within two minutes or are refused, and no memory is taken without bounds.
 
-    100,000 atoms in one place and 10,000 within 3 Å, 100,000 chains, gzip files that unpack to a million atoms or
-    to 128 million blank lines, polygons of 100,000 corners and with 100,000 teeth, atoms at 9,000 Å, brackets 200,000
-    deep, heads that count 10^18 vertices, pipes and devices. The time is that of processors. What has no end may take
+    100,000 atoms in one place and 10,000 within 3 Å, 100,000 chains, gzip files that unpack to a million atoms or to
+    128 million blank lines, polygons of 100,000 corners and with 100,000 teeth, atoms at 9,000 Å, brackets 200,000
+    deep, heads that count 10^18 vertices, pipes and devices. The time is processor time. Input without an end may take
     1 GiB, a million atoms 4 GiB.
     """
     write_inputs(trial.folder)

@@ -1,4 +1,4 @@
-"""Commands killed at random: what stands then, and what the next call makes of it."""
+"""Commands killed at random: the files afterwards, and the result of the next call."""
 
 import csv
 import io
@@ -106,7 +106,7 @@ def kills(trial):
     repeat(trial, scene, common, left, environment)
 
 
-# Commands that replace a finished result with --force alone; others leave alone what is done.
+# Commands that replace a finished result with --force alone; others leave finished results unchanged.
 REFUSED_AGAIN = ("dock", "tradeoff", "sample", "inspect", "evaluate")
 
 

@@ -1,4 +1,4 @@
-"""Names in files: what they may not do to a spreadsheet or a terminal."""
+"""Names in files: no harm to a spreadsheet or a terminal."""
 
 import csv
 import io
@@ -87,7 +87,7 @@ def control_characters(trial):
     for words in trial.random.sample(calls, 4):
         is_json = trial.random.random() < 0.3
         call = trial.run(*words, *(["--json"] if is_json else []))
-        # JSON has a program for a reader, and need not escape what lies above 0x7e.
+        # JSON has a program for a reader, and need not escape characters above 0x7e.
         said = call.err if is_json else call.out + call.err
         found = re.search(r"[\x00-\x08\x0b-\x1f\x7f-\x9f]", said) or re.search(r"[\x00-\x09\x0b-\x1f]", call.out)
         shown = repr(found[0]) + " in " + said[-200:] if found else ""

@@ -57,7 +57,7 @@ def noise(trial):
     """Noise of 0.001 Å on all atoms leaves the first ten rows of a run in place, but for ties.
 
     The example pair (1PPE), its ligand turned by right angles, with and without noise on the last digit of each
-    coordinate. Two scores tie where they are closer than the worst error of the fast path that the run reports (0.3 to
+    coordinate. Two scores tie if they are closer than the worst error of the fast path that the run reports (0.3 to
     0.5% of the best score). No score of the first ten moves by more than 0.5% of the best.
     """
     turn = trial.random.choice(RIGHT_ANGLES)
@@ -87,7 +87,7 @@ def compare_ranks(trial, before, after, tie):
         score = float(row["score"])
         place = next((place for place, other in enumerate(after) if is_same_pose(row, other)), None)
         if place is None:
-            # Another pose of the cluster may stand for it where the two tie.
+            # Another pose of the cluster may take its place if the two tie.
             near = min(abs(float(other["score"]) - score) for other in after)
             trial.check(near <= tie, f"rank {row['rank']} ({score:.1f}) is gone; a tie is {tie:.1f}")
             continue

@@ -1,4 +1,4 @@
-"""Small inputs, and the calls that write files: what each makes, with and without an older result in its place."""
+"""Small inputs, and the calls that write files: the results of each, with and without an older result in its place."""
 
 import functools
 import shutil

@@ -1,4 +1,4 @@
-"""Shards of a batch that are killed, damaged, or whose disk is full: what they come to in the end."""
+"""Shards of a batch that are killed, damaged, or whose disk is full: their tables in the end."""
 
 import gzip
 import json
@@ -57,11 +57,11 @@ def plant_notes(trial):
 
 
 def killed_shards(trial):
-    """A batch whose shards are killed again and again makes the table of one that nothing disturbs.
+    """A batch whose shards are killed again and again makes the table of an undisturbed batch.
 
     Up to twelve pairs, one of a damaged file, in one to three shards, on one or two threads, with scratch folders that
     change from call to call or without. Each shard is killed by SIGKILL at up to nine random moments, and goes on. The
-    merged tables are compared byte for byte; notes of the user's in folders of shards stay.
+    merged tables are compared byte for byte; the user's notes in folders of shards stay.
     """
     count = trial.random.randint(3, 12)
     expected = prepare(trial, count, trial.random.randrange(count))
@@ -123,7 +123,7 @@ def shards_on_full_disks(trial):
 
 
 def hostile_record(trial, content):
-    """A record of a shard that is none of any, or one of very many."""
+    """A record of a shard that counts no shards, or very many."""
     record = json.loads(content)
     index, count = trial.random.choice([(0, 0), (1, 0), (0, 1), (3, 2), (1, 10**12), (2**64 - 1, 2**64 - 1)])
     shape = {"index": index, "count": count} if isinstance(record["shard"], dict) else f"{index}/{count}"
@@ -131,7 +131,7 @@ def hostile_record(trial, content):
 
 
 def gzip_without_end(path, megabytes):
-    """A gzip file that unpacks to so many megabytes without a line end."""
+    """A gzip file that unpacks to the given number of megabytes without a line end."""
     packer = zlib.compressobj(1, zlib.DEFLATED, 31)
     with open(path, "wb") as file:
         for _ in range(megabytes):

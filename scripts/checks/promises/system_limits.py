@@ -16,7 +16,7 @@ def random_call(trial):
 
 
 def threads_refused(trial):
-    """Where the system starts no more threads a command ends with an error, exit code 1 and JSON, or does without.
+    """If the system starts no more threads a command ends with an error, exit code 1 and JSON, or does without.
 
     RLIMIT_NPROC of 1 to 6 (`ulimit -u`), --threads 1, 4 or 64 or none (root runs the program as another user).
     """
@@ -34,9 +34,9 @@ def threads_refused(trial):
 
 
 def memory_refused(trial):
-    """Where the system gives no more memory a command ends with an error, exit code 1 and JSON.
+    """If the system gives no more memory a command ends with an error, exit code 1 and JSON.
 
-    RLIMIT_AS from what starts the program at all to 400 MB beyond it. An exit code of 2 is right as well, where the
+    RLIMIT_AS from the least that starts the program to 400 MB beyond it. An exit code of 2 is right as well, if the
     limit is seen before the work.
     """
     words = random_call(trial)

@@ -138,7 +138,7 @@ class Trial:
                 self.check(whole and all(whole), f"no JSON error: {call.out[:200]!r}")
 
     def make(self, name, content):
-        """Writes a file of the user's, with the folders that it needs."""
+        """Writes a user's file, with the folders that it needs."""
         path = self.folder / name
         path.parent.mkdir(parents=True, exist_ok=True)
         path.write_bytes(content if isinstance(content, bytes) else content.encode())

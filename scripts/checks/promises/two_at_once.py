@@ -21,7 +21,7 @@ def start_both(trial, calls):
 
 
 def docks_at_once(trial):
-    """Of two runs into one folder at once the folder holds one whole, and nothing else.
+    """After two runs into one folder at once the folder holds one whole, and nothing else.
 
     Two docks of different inputs, with --force or without, start within a tenth of a second of each other.
     """
@@ -42,10 +42,10 @@ def docks_at_once(trial):
 
 
 def batches_at_once(trial):
-    """Of two calls of one batch at once one is refused or follows, and no row is lost or there twice.
+    """If a batch is called twice at once, one call is refused or follows, and no row is lost or there twice.
 
-    Two calls of a batch, or of a shard with scratch folders of their own or without, start within a tenth of a second
-    of each other; one that is refused is called again. The tables are compared with those of an undisturbed batch.
+    Two calls of a batch, or of a shard with separate scratch folders or without, start within a tenth of a second of
+    each other; one that is refused is called again. The tables are compared with those of an undisturbed batch.
     """
     write_inputs(trial.folder)
     kind = trial.random.choice(["all", "table", "shard", "scratch", "scratch"])

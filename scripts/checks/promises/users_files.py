@@ -15,7 +15,7 @@ KINDS = ["file", "folder", "link to a file", "link to a folder", "dangling link"
 
 
 def write_thesis(trial):
-    """A folder of the user's whose files have the names of a run's."""
+    """A user's folder whose files have the names of a run's files."""
     for name in ("chapter.txt", "poses.csv", "run.json", "batch.json", "results.csv", "k.csv", "lock", "top/notes.txt"):
         trial.make(f"thesis/{name}", f"the user's {name}\n" * 3)
     for rank in range(1, 13):
@@ -61,10 +61,10 @@ def check_refused(trial, scene, call, before):
 
 
 def names_on_the_way(trial):
-    """No file, folder or link of the user's is lost or followed that has a name the program writes under.
+    """No user's file, folder or link at a name that the program writes is lost or followed.
 
-    Names that each command passes through are recorded by inotify. Then files, folders and links to a folder of the
-    user's lie there, and under names like those, before the command runs. One that is refused changes nothing.
+    Names that each command passes through are recorded by inotify. Then files, folders and links to a user's folder are
+    put there, and at similar names, before the command runs. One that is refused changes nothing.
     """
     scene = trial.random.choice(SCENES)
     scene.prepare(trial)
@@ -85,14 +85,14 @@ def names_on_the_way(trial):
 
 
 def is_output(name, scene, plan):
-    """Whether an entry is one that the scene's call may replace: all below its outputs but what was planted."""
+    """Whether an entry is one that the scene's call may replace: all below its outputs but the planted ones."""
     if any(name == planted or name.startswith(f"{planted}/") for planted, _ in plan):
         return False
     return any(name == output or name.startswith(f"{output}/") for output in scene.outputs)
 
 
 def room_for(trial, name):
-    """The path of an entry, free for another; what was there is moved away."""
+    """The path of an entry, free for another; the old entry is moved away."""
     path = trial.folder / name
     path.parent.mkdir(parents=True, exist_ok=True)
     if path.exists():
@@ -103,7 +103,7 @@ def room_for(trial, name):
 def links_for_outputs(trial):
     """A link at a name that is written is refused, with and without --force, and what it leads to stays.
 
-    A link to a file or folder of the user's stands in the place of one of the command's outputs. The error names it.
+    A link to a user's file or folder is in the place of one of the command's outputs. The error names it.
     (Links among the folders above are followed, as by other programs.)
     """
     scene = trial.random.choice(SCENES)
@@ -192,9 +192,9 @@ EDITED = ["poses.csv", "report.html", "top/rank_0001.pdb", "top/rank_0002.pdb"]
 
 
 def foreign_files(trial):
-    """A run with files of the user's in its folder, or with edited ones, is not replaced, and --force names them.
+    """A run with the user's files in its folder, or with edited ones, is not replaced, and --force names them.
 
-    Notes, pictures, links and folders lie in the folder of a run, an ensemble or a batch's pair; files of the run are
+    Notes, pictures, links and folders are in the folder of a run, an ensemble or a batch's pair; files of the run are
     edited, or its record is torn. Then it shall be replaced with --force: the call is refused and the run unchanged.
     """
     write_inputs(trial.folder)
@@ -241,8 +241,8 @@ def foreign_files(trial):
 def other_folders(trial):
     """A folder that holds anything but an older result of the command is refused, and nothing in it changes.
 
-    dock, tradeoff, batches and shards, with and without --force, into a folder of the user's, the current one, the
-    results of another command, and a batch of another table, of which the error names the pairs that differ.
+    dock, tradeoff, batches and shards, with and without --force, into a user's folder, the current one, the results of
+    another command, and a batch of another table. For the latter the error names the pairs that differ.
     """
     write_inputs(trial.folder)
     write_thesis(trial)
@@ -273,8 +273,8 @@ def other_folders(trial):
 def edited_files(trial):
     """`export`, `refine`, `report` and `merge` without --force replace no file that was edited, nor another one.
 
-    Files that these commands have written or would write are edited, or replaced by files or links of the user's; then
-    the command is called again. One that is refused changes nothing.
+    Files that these commands have written or would write are edited, or replaced by the user's files or links; then the
+    command is called again. One that is refused changes nothing.
     """
     write_inputs(trial.folder)
     write_thesis(trial)

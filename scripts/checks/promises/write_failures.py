@@ -22,7 +22,7 @@ def check_failed_cleanly(trial, scene, call, before):
         wrong = differences(comparable(found, trial.folder), comparable(common.new, trial.folder))
         trial.check(not wrong, f"ended well, but {wrong}")
     elif scene.goes_on or scene.words[0] in ("merge", "export", "refine", "sample", "inspect"):
-        # Each file, and each pair of a batch, is a result by itself: those before the failure may stand.
+        # Each file, and each pair of a batch, is a result by itself: those before the failure may stay.
         there = comparable(found, trial.folder)
         check_units(trial, scene, common, there)
         check_table(trial, there)
@@ -50,7 +50,7 @@ def file_size_limit(trial):
 
 
 def own_mounts():
-    """Gives this process a view of its own on mounted file systems, so that what it mounts goes with it."""
+    """Gives this process a separate view of mounted file systems, so that its mounts end with it."""
     if os.geteuid() != 0:
         raise Skipped("only root may mount a small disk")
     if not own_mounts.done:
@@ -68,7 +68,7 @@ own_mounts.done = False
 def full_disk(trial):
     """On a full disk a command ends with exit code 1 or 2, an error, and all as it was.
 
-    The folder is a file system of 0 to 200 kB beyond what lies there already (needs root on Linux).
+    The folder is a file system of 0 to 200 kB beyond the files already there (needs root on Linux).
     """
     own_mounts()
     scene = trial.random.choice(SCENES)
@@ -94,7 +94,7 @@ def full_disk(trial):
 
 
 def no_permission(trial):
-    """Where a folder cannot be made or written to, a command ends with an error that names it, and all as it was.
+    """If a folder cannot be made or written to, a command ends with an error that names it, and all as it was.
 
     Any command where all folders are read-only; a folder without write permission, a file in the place of a folder,
     and a name that is too long. In a writable folder of a read-only one batch and sample work; a run, which is made

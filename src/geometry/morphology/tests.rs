@@ -45,8 +45,8 @@ fn norm(point: [f64; 3]) -> f64 {
     nalgebra::Vector3::from(point).norm()
 }
 
-/// Checks that no point of a box twice as wide as the outer balls says otherwise, and that the exact volume lies between
-/// the two, which differ by `width` of it at most.
+/// Checks that no point of a box twice as wide as the outer balls contradicts, and that the exact volume is between the
+/// two, which differ by `width` of it at most.
 fn check(found: &Bracket, exact: f64, width: f64, is_in: impl Fn([f64; 3]) -> bool) {
     let [inner, outer] = [&found.inner, &found.outer].map(|balls| BallTree::new(balls));
     let (low, high) = found.bounds();

@@ -66,8 +66,8 @@ pub fn file_names(rank: usize) -> [String; 3] {
     ["pdb", "cif", "obj"].map(|extension| file_name(rank, extension))
 }
 
-/// Writes the complexes of `rows` into a staging folder as `rank_0001.pdb` ...; as `.cif` when one of the inputs was
-/// mmCIF or a complex does not fit the PDB format, or in the format that is `wanted`. For a ring all copies are
+/// Writes the complexes of `rows` into a staging folder as `rank_0001.pdb` ... They are `.cif` when one of the inputs
+/// was mmCIF or a complex does not fit the PDB format, or of the format that is `wanted`. For a ring all copies are
 /// written. `note` follows the rank in the remarks.
 ///
 /// # Errors

@@ -9,8 +9,8 @@
 //! - Sets of atoms are split into clumps of at most 4 Å about their middles, whose radii add to the ball's.
 //! - The effective distance of n pairs is up to n^(1/6) times below the shortest. 64 pairs are allowed for: of larger
 //!   sets only those in contact are near.
-//! - A pose may be between the samples: half a voxel's diagonal from a translation, and at half of the covering
-//!   radius from a rotation, which moves an atom by that angle times its distance from the ligand's centre. This is
+//! - A pose may be between the samples: half a voxel's diagonal from a translation, and at half of the covering radius
+//!   from a rotation. The latter moves an atom by that angle times its distance from the ligand's centre. This is
 //!   about the middle of the possible range; poses beyond it are found from the next sample.
 //!
 //! Lower bounds are left to the pose term. A membrane excludes a slab of translations ([`slab`]).

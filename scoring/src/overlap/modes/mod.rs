@@ -242,7 +242,7 @@ impl Smoothing {
 
 /// Bound of |psi^(q)| / psi^(0) from q on, for a bump of any exponent with integral `volume`.
 ///
-/// A bump is a mean of sharp balls of radius rho up to 1, whose transforms are at most 4 pi rho^3 (1 + z) / z^3 with
+/// A bump is a mean of sharp balls of radius rho up to 1. Their transforms are at most 4 pi rho^3 (1 + z) / z^3 with
 /// z = 2 pi rho q: largest for rho = 1.
 fn falling_bound(q: f64, volume: f64) -> f64 {
     let z = 2.0 * PI * q;

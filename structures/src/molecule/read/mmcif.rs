@@ -394,7 +394,7 @@ impl<'a> AtomRow<'_, 'a> {
         Ok(())
     }
 
-    /// The quotes for a value that pdbtbx ends where they end: it stops at the first quote of the kind it started with.
+    /// The quotes for a value. pdbtbx ends a value at the first quote of the kind that it started with.
     fn quote(&self, item: &str, value: &str) -> Result<char, Error> {
         let quote = match (value.contains('"'), value.contains('\'')) {
             (false, _) => '"',
