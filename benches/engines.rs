@@ -32,7 +32,7 @@ const REPEATS: usize = 5;
 const TOP: usize = 100;
 const SPACINGS: [f64; 7] = [2.0, 1.6, 1.3, 1.0, 0.8, 0.65, 0.5];
 
-/// One setting's error and seconds a rotation.
+/// One setting's error and seconds per rotation.
 struct Row {
     name: String,
     error: f64,

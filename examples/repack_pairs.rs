@@ -7,8 +7,8 @@
 //!
 //! - `residues`: side chains with chi angles that in the bound complex have an atom within 6 Å of the other molecule,
 //!   complete in both;
-//! - `rmsd`: of their heavy atoms in Å, each residue superposed by N, CA and C, names of equal atoms exchanged where
-//!   that is better;
+//! - `rmsd`: of their heavy atoms in Å, each residue superposed by N, CA and C, names of equal atoms exchanged if that
+//!   is better;
 //! - `chi1`: share of them whose chi1 is within 40 degrees of the bound one;
 //! - `clashes`: pairs of atoms across the interface nearer than 0.8 of the sum of their radii.
 //!

@@ -367,7 +367,7 @@ mod tests {
         of_table(text, &receptor)
     }
 
-    /// Of the receptor A:10 has the atoms 0 to 4, the last a hydrogen, A:52 has 9 to 11, A:52A 12 to 14, D:-3 15 and
+    /// In the receptor A:10 has the atoms 0 to 4, the last a hydrogen, A:52 has 9 to 11, A:52A 12 to 14, D:-3 15 and
     /// 16.
     #[test]
     fn residues_go_by_chain_and_number() {

@@ -75,9 +75,9 @@ pub struct Rung {
 /// by r.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct OffsetSensitivity {
-    /// Of the score, all three slices moved together.
+    /// Derivative of the score, all three slices moved together.
     pub score: f64,
-    /// Of the slices at 0, r0, 2 r0.
+    /// Derivatives of the slices at 0, r0, 2 r0.
     pub slices: [f64; 3],
     /// Derivative of the score by finite differences of the exact sum.
     pub exact_score: f64,

@@ -1,4 +1,4 @@
-//! Each kind of bad input: exit code 2, a message that names the fault, the file and the line, and what to do; and
+//! Each kind of bad input: exit code 2, a message that names the fault, the file and the line, and the remedy; and
 //! nothing written.
 
 use crate::molecules;

@@ -1,4 +1,4 @@
-//! `--config`: options from a file, which commands take them, and what of them wins.
+//! `--config`: options from a file, the commands that take them, and the order of precedence.
 
 use crate::molecules;
 use std::fs;
@@ -73,7 +73,7 @@ fn a_file_stands_for_what_would_be_typed_and_what_is_typed_wins() {
     assert_eq!(options["kernel"]["lambda"], 7.0);
     assert_eq!(options["search"]["rotations"], 17);
     assert_eq!(options["search"]["poses"], 60);
-    // The record is a run of its own: nothing of the file is needed to repeat it.
+    // The record is complete: nothing of the file is needed to repeat the run.
     fs::remove_file(folder.path().join("quick.toml")).unwrap();
     succeed(
         folder.path(),
@@ -132,7 +132,7 @@ fn what_is_wrong_with_a_file_is_reported_with_its_line() {
         assert!(error["message"].as_str().unwrap().contains(part), "{error}");
         assert!(error["remedy"].is_string());
     }
-    // A file that it names has faults of its own.
+    // A file that it names has its own faults.
     let text = "[terms]\n\ncontact_potential = \"no.csv\"\n";
     fs::write(folder.path().join("wrong.toml"), text).unwrap();
     let pair = "dock receptor.pdb ligand.pdb --config wrong.toml";

@@ -342,7 +342,7 @@ fn what_is_no_ensemble_is_refused() {
         let message = error["message"].as_str().unwrap();
         assert!(message.contains(said), "{options}: {message}");
     }
-    // A run and an ensemble do not share a directory, and what reads one run says what this is.
+    // A run and an ensemble do not share a directory, and commands that read one run report that this is an ensemble.
     run(
         folder.path(),
         &format!("dock receptor.pdb models.pdb --ligand-models all {SHORT} -o run"),

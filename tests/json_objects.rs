@@ -109,7 +109,7 @@ fn evaluate_gives_every_pose_and_the_match() {
         folder.path(),
         "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 0 -o run --quiet",
     );
-    // The ligand where it stands in the native: nothing to measure but zeros and ones.
+    // The ligand at its place in the native: nothing to measure but zeros and ones.
     fs::write(
         folder.path().join("truth.csv"),
         "rank,qw,qx,qy,qz,tx,ty,tz\n1,1,0,0,0,0,0,0\n2,1,0,0,0,0,0,50\n",

@@ -94,7 +94,7 @@ fn copy(records: &str, chain: char, shift: f64) -> String {
 fn the_copy_that_is_taken_is_named() {
     let folder = place();
     let (one, other) = (atoms("receptor_bound", 'E'), atoms("ligand_bound", 'I'));
-    // The second inhibitor stands alone, under the docked ligand's name.
+    // The second inhibitor is alone, under the docked ligand's name.
     let native = [copy(&other, 'B', 80.0), one, other].concat();
     fs::write(folder.path().join("native.pdb"), native).unwrap();
     let object = measured(folder.path(), EVALUATE);

@@ -96,7 +96,7 @@ fn a_changed_report_stays() {
     run(folder.path(), &dock);
     let report = folder.path().join("run/report.html");
     let written = fs::read_to_string(&report).unwrap();
-    // Not a request to anywhere, in spite of what is in it.
+    // Not a request to anywhere, in spite of its content.
     assert!(written.contains("default-src 'none'") && !written.contains("src=\"http"));
     run(folder.path(), &format!("{dock} --force --no-report"));
     assert!(!report.exists());

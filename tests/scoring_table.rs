@@ -146,7 +146,7 @@ fn write_table(name: &str, columns: &[&str], table: &Table) {
         let mut record = vec![case.clone(), number.to_string()];
         record.extend(values.iter().map(|value| {
             value.map_or(String::new(), |value| {
-                // Ten digits: a thousandth of what may move.
+                // Ten digits: a thousandth of the tolerance.
                 format!("{}", format!("{value:.9e}").parse::<f64>().unwrap() + 0.0)
             })
         }));
@@ -328,7 +328,7 @@ fn two_atoms_score_the_closed_form() {
     let (_, scores, _) = scored("two_atoms", &poses);
     let mut positive = 0;
     for ((number, pose), exact) in poses.iter().zip(&scores) {
-        // Both atoms stand at the origin of their files, and an aliphatic carbon has 1.88 Å (Tsai et al. 1999).
+        // Both atoms are at the origin of their files, and an aliphatic carbon has 1.88 Å (Tsai et al. 1999).
         let distance = pose.translation.norm();
         let [zero, skin, twice] =
             [0.0, 1.0, 2.0].map(|k| bump(distance / (2.0 * 1.88 + k * options.kernel.offset)));

@@ -63,7 +63,7 @@ impl Scene {
         })
     }
 
-    /// The bound eps of the bunny's sampling; the others' are this but for what rounding their nodes to whole ones changes.
+    /// The bound eps of the bunny's sampling; the others' are this but for the rounding of their nodes to whole ones.
     pub fn epsilon(&self) -> f64 {
         0.5 * 3f64.sqrt() / (self.per_axis - 1) as f64
     }

@@ -20,7 +20,7 @@ static JSON: AtomicBool = AtomicBool::new(false);
 /// Whether a failure is being reported: by the first thread that has no memory.
 static REPORTED: AtomicBool = AtomicBool::new(false);
 
-/// What went wrong, and what to do about it.
+/// The error, and its remedy.
 const MESSAGE: &str = "the system has no memory left";
 const REMEDY: &str = "allow the program more memory (`ulimit -v`, or the limit of its container), or less to its work: \
                       by --memory or a coarser --resolution, of a sampled mesh by a coarser --grid";
@@ -177,7 +177,7 @@ pub fn report_end() {}
 /// The lines, and the object where one is wanted; then the signal again.
 #[cfg(unix)]
 extern "C" fn say_and_end(signal: libc::c_int) {
-    // The line of a progress bar may stand before it.
+    // The line of a progress bar may be before it.
     const LINES: &[u8] = b"\nerror: the command was interrupted: a run that was not finished has no results, pairs of a batch that were finished have theirs\n  help: give the command again; a batch goes on where it was\n";
     const OBJECT: &[u8] = b"{\"error\":{\"file\":null,\"line\":null,\"message\":\"the command was interrupted\",\"remedy\":\"give the command again; a batch goes on where it was\"}}\n";
     if wants_json() {

@@ -61,7 +61,7 @@ pub(super) struct RmsdForms {
 impl RmsdForms {
     /// Prepares receptor and ligand; `across` are the native's residue pairs within 10 Å.
     ///
-    /// The interface is what DockQ 2.1.3 makes it: of the *matched* residues those within 10 Å of a matched one across.
+    /// The interface is that of DockQ 2.1.3: the *matched* residues within 10 Å of a matched one across.
     pub fn new(sides: [Side; 2], across: &[AcrossPair]) -> Self {
         let matched: [HashSet<usize>; 2] =
             sides.map(|side| side.pairs.iter().map(|pair| pair.1).collect());

@@ -202,7 +202,7 @@ fn swapped_identical_chains_find_the_best_order() {
     let evaluator = evaluator((&dimer("B", "A"), &ligand), (&dimer("A", "B"), &ligand)).unwrap();
     assert_eq!(evaluator.report().permutations, 2);
     assert_perfect(evaluator.evaluate(&Pose::identity()));
-    // A native of one chain: the ligand may sit on either of the user's two.
+    // A native of one chain: the ligand may be on either of the two that the user names.
     let (one, _) = bound();
     let on_one = super::tests::evaluator((&dimer("B", "A"), &ligand), (&one, &ligand)).unwrap();
     assert_perfect(on_one.evaluate(&Pose::identity()));

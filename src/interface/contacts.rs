@@ -36,7 +36,7 @@ pub struct ContactFinder<'a> {
 }
 
 impl<'a> ContactFinder<'a> {
-    /// Of two molecules, the second of which moves; charges are those at a pH.
+    /// A finder for two molecules, the second of which moves; charges are those at a pH.
     pub fn new([fixed, moved]: [&'a Molecule; 2], ph: f64) -> Self {
         let (fixed, first) = sites(fixed, ph);
         let (moved, second) = sites(moved, ph);

@@ -7,7 +7,7 @@ use super::definition::{Choice, Optional, Parsed, options};
 use super::values::{NOT_NEGATIVE, Range, Rotations, SHARE};
 
 options! {
-    /// How densely is searched, and on what.
+    /// Density of the search, and its engine.
     SearchOptions as search, "Search", Both {
         /// Rotations of the ligand, spread evenly over all: their number, or the angle between them, such as 15deg.
         ///

@@ -1,4 +1,4 @@
-//! Presets of cross-linking reagents: which atoms a cross-link restrains, and to what distance.
+//! Presets of cross-linking reagents: the atoms that a cross-link restrains, and their distance.
 //!
 //! A reagent has a line here only with a published bound.
 

@@ -184,7 +184,7 @@ fn scan_on_cores(
                 });
                 searched.fetch_add(group.count(), Ordering::Relaxed);
             }
-            // The lists of all threads are joined: each is no longer than what is kept.
+            // The lists of all threads are joined: each is no longer than the list that is kept.
             if found.len() > most {
                 found.sort_unstable_by(Peak::order);
                 found.truncate(most);

@@ -1,4 +1,4 @@
-//! Hard shapes, each with what must come of it.
+//! Hard shapes, each with the expected result.
 
 #![cfg(feature = "mesh")]
 

@@ -124,7 +124,7 @@ fn segids_are_chains_if_a_file_has_none() {
     assert_eq!(chains(&(atom.clone() + &of_segment("", 1.0))), ["B", ""]);
     let models = format!("MODEL 1\n{atom}ENDMDL\nMODEL 2\n{}ENDMDL\n", ATOM.text());
     assert_eq!(chains(&models), [""]);
-    // Parts of a complex with END between have segids of their own, and frames of a trajectory the same one.
+    // Parts of a complex with END between have different segids, and frames of a trajectory the same one.
     let parts = format!("{atom}END\n{}END\n", of_segment("C", 1.0));
     assert_eq!(chains(&parts), ["B", "C"]);
     assert_eq!(chains(&format!("{atom}END\n{atom}END\n")), ["B"]);

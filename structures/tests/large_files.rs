@@ -22,7 +22,8 @@ fn read_text(text: &str, options: &ReadOptions) -> Result<Molecule, Error> {
     read(&InputSpec::whole(path), options)
 }
 
-/// Atoms on a grid of 4 Å, each with what `row` says: its name, alternate location, residue's name, chain and number.
+/// Atoms on a grid of 4 Å, each with the fields of `row`: its name, alternate location, residue's name, chain and
+/// number.
 fn atoms(count: usize, row: impl Fn(usize) -> String) -> String {
     let mut text = HEAD.to_owned();
     for index in 0..count {

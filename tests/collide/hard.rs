@@ -12,7 +12,7 @@ fn needles_and_plates() {
     );
     place.write("plate.obj", &block([-5.0, -5.0, -0.005], [5.0, 5.0, 0.005]));
     for (first, second) in [("needle.obj", "plate.obj"), ("plate.obj", "needle.obj")] {
-        // The needle stands on the plate: through it, and beside it.
+        // The needle is upright on the plate: through it, and beside it.
         for (y, free) in [(0.0, false), (6.5, true)] {
             let pose = format!("0.7071067811865476,0,0.7071067811865476,0,0,{y},0");
             let object = place.collide(&[first, second, "--pose", &pose, "--compute", "distance"]);

@@ -107,7 +107,7 @@ impl Place {
         serde_json::from_slice(&output.stdout).unwrap()
     }
 
-    /// The error object of what must be refused with exit code 2.
+    /// The error object of a call that must be refused with exit code 2.
     pub fn refused(&self, arguments: &[&str]) -> Value {
         let output = self.command(arguments).arg("--json").output().unwrap();
         let words = String::from_utf8_lossy(&output.stderr);

@@ -161,7 +161,7 @@ fn tables_and_files_of_solids() {
     Scenario::new(solids, obstacle).by_file().check();
 }
 
-/// Of each pair the old or no run stands, or the new one; the table has a row for each pair. What a run writes beside its
+/// Each pair has the old run, no run or the new one; the table has a row for each pair. What a run writes beside its
 /// table is left to the tests of a run.
 #[test]
 fn a_batch() {

@@ -1,4 +1,5 @@
-//! Effects on demand: what auto turns on, what an effect that is off leaves untouched, and what cannot be forced.
+//! Effects on demand: effects that auto turns on, output that an effect that is off leaves untouched, and effects that
+//! cannot be forced.
 
 mod flexible_regions;
 mod known_residues;

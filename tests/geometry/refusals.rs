@@ -1,4 +1,4 @@
-//! Bad input: exit code 2, the file and what to do, and nothing written.
+//! Bad input: exit code 2, the file and the remedy, and nothing written.
 
 use std::fs;
 

@@ -91,7 +91,7 @@ fn an_f32_search_loses_only_poses_at_the_edge_of_the_hundred() {
                     "{tolerance:e} rank {rank:?}: error {error:.2e}, margin {margin:.2e}, {lost} lost"
                 );
                 assert!(margin <= 2.0 * error, "{margin:e} {error:e}");
-                // Rank 2 of three radii is what a search compresses to at 1e-2.
+                // A search compresses three radii to rank 2 at 1e-2.
                 if rank.is_none() || tolerance == 1e-2 {
                     assert!(margin <= bound, "{margin:e}");
                 }

@@ -2,7 +2,7 @@
 //!
 //! A run once took 134% more than its limit with 100,000 poses kept, and a quarter more of meshes: rows, clusters,
 //! sampling, refinement and reading were not counted. The peak is the kernel's own count of resident memory, which does
-//! not depend on what else runs. Other systems than Linux do not report it, and there only the refusal is checked.
+//! not depend on other programs. Other systems than Linux do not report it, and there only the refusal is checked.
 
 mod scenes;
 

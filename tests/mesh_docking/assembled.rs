@@ -32,7 +32,7 @@ fn put_together((pair, clearance): (Pair, f64)) {
     let place = Place::of(&pair);
     let run = docked(&place, &[]);
     let run = &run["run"];
-    // The clearance is what the sampling needs: twice the sum of eps.
+    // The clearance is the least that the sampling needs: twice the sum of eps.
     let epsilon = |side: &str| run["inputs"][side]["sampling"]["epsilon"].as_f64().unwrap();
     let needed = 2.0 * (epsilon("receptor") + epsilon("ligand"));
     assert!(

@@ -84,7 +84,8 @@ fn the_right_pose_is_the_top_of_the_landscape() {
     }
 }
 
-/// Of fitted weights the summed bumps hold the volume of the solid, so that sums over pairs are integrals over volumes.
+/// With fitted weights the summed bumps hold the volume of the solid, so that sums over pairs are integrals over
+/// volumes.
 #[test]
 fn weights_are_volumes() {
     let (pair, _) = broken();

@@ -69,7 +69,7 @@ fn meshes_that_bound_no_solid_are_refused_with_their_file() {
     assert_eq!(error["line"], 2);
 }
 
-/// Of a small part nothing is left at the resolution that the grid of a part a hundred times as long allows.
+/// Nothing is left of a small part at the resolution that the grid of a part a hundred times as long allows.
 #[test]
 fn parts_too_different_in_size_are_refused() {
     let place = Place::of(&broken_block(0.05));

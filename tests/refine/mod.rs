@@ -37,7 +37,7 @@ fn refine(folder: &Path, words: &str) -> Value {
     serde_json::from_slice(&output.stdout).unwrap()
 }
 
-/// The standard error of what must be refused.
+/// The standard error of a call that must be refused.
 fn refused(folder: &Path, words: &str) -> String {
     let output = cargo_bin_cmd!("knotdock")
         .current_dir(folder)

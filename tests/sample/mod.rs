@@ -56,7 +56,7 @@ impl Place {
         serde_json::from_slice(&output.stdout).unwrap()
     }
 
-    /// The error object of what must be refused with exit code 2 and without a trace.
+    /// The error object of a call that must be refused with exit code 2 and without a trace.
     fn refused(&self, arguments: &[&str]) -> Value {
         let before = self.files();
         let output = self.command(arguments).arg("--json").output().unwrap();

@@ -230,7 +230,7 @@ impl Obstacle {
     }
 }
 
-/// Most points an axis of a gap function.
+/// Most points per axis of a gap function.
 const MAX_GAP_GRID: usize = 256;
 
 /// The gap function of the inner balls by each way, printed as a table.

@@ -170,7 +170,7 @@ fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Error> {
     Ok(())
 }
 
-/// Settings by time, with what most want to know of them.
+/// Settings by time, with their main figures.
 fn table(tradeoff: &Tradeoff) -> String {
     let header = "setting|wall s|CPU s|rank|error rms|worst|score apart|agreement|front";
     let of_native = match tradeoff.with_native {

@@ -77,7 +77,7 @@ struct ModelFile {
 }
 
 impl ModelFile {
-    /// Reads a file. Of several models every one counts, unless the options of reading choose.
+    /// Reads a file. If a file has several models, every one counts, unless the options of reading choose.
     fn read(file: &str, options: &ReadOptions) -> Result<Self, Error> {
         let path = PathBuf::from(file);
         let bytes = file_bytes(&path)?;

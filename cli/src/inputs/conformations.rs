@@ -52,7 +52,7 @@ pub fn conformations(
     Ok(found)
 }
 
-/// Refuses what is no molecule, and what can be read but once.
+/// Refuses files other than molecules, and those that can be read only once.
 fn check(spec: &InputSpec) -> Result<(), Error> {
     if is_shape(&spec.path) {
         return Err(

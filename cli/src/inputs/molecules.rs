@@ -38,7 +38,7 @@ pub struct Input {
 impl Input {
     /// Reads what a specification names.
     pub fn of(spec: &InputSpec, options: &ReadOptions) -> Result<Self, Error> {
-        // Read once: what is recorded is what was read, of a pipe, too.
+        // Read once: the recorded bytes are the ones that were read, from a pipe, too.
         let bytes = file_bytes(&spec.path)?;
         Ok(Self {
             record: InputRecord::new(spec, &bytes),

@@ -252,7 +252,7 @@ impl Progress for ProgressLine<'_> {
             return receiver.stage(name, total);
         }
         self.bar.finish_and_clear();
-        // Each of these would draw a line of its own that is half the old stage's and half the new one's.
+        // Each of these would draw a separate line that is half the old stage's and half the new one's.
         self.bar.set_draw_target(ProgressDrawTarget::hidden());
         self.bar.reset();
         self.bar.set_length(total);

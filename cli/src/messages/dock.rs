@@ -453,7 +453,7 @@ pub fn time_text(seconds: f64) -> String {
     }
 }
 
-/// The cost of a finished run of `seconds`, the error of the fast path, and what else decided the ranking.
+/// The cost of a finished run of `seconds`, the error of the fast path, and the other facts that decided the ranking.
 pub fn cost_text(plan: &DockPlan, outcome: &DockOutcome, seconds: f64) -> String {
     let costs = || outcome.effects.iter().filter(|cost| cost.on);
     let rotation = costs().map(|cost| cost.milliseconds_per_rotation).sum();

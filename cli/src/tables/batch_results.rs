@@ -54,7 +54,7 @@ impl RunSummary {
     pub fn of(directory: &Path) -> Result<Self, Error> {
         let table = PoseTable::read(&directory.join("poses.csv"))?;
         let rows = table.objects(0..table.rows().len());
-        // An ensemble has a record of its own, with the same counts.
+        // An ensemble has its own record, with the same counts.
         let read = |name: &str| read_bounded_file(&directory.join(name), MAX_RECORD);
         let record = read("run.json").or_else(|_| read("ensemble.json"));
         let record = record.unwrap_or_default();

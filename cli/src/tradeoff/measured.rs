@@ -36,7 +36,7 @@ pub struct NativeRanks {
 #[derive(Clone, Debug)]
 pub struct Measured {
     pub setting: Setting,
-    /// Grid points an axis.
+    /// Grid points per axis.
     pub grid: [usize; 3],
     pub spacing: f64,
     /// Modes kept in three dimensions, conjugates not counted.

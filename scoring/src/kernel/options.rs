@@ -148,7 +148,7 @@ impl KernelOptions {
 
 #[cfg(test)]
 impl KernelOptions {
-    /// Of whole lengths, for unit tests.
+    /// Options with whole lengths, for unit tests.
     pub(crate) const TEST: Self = Self {
         lambda: 10.0,
         offset: 2.0,

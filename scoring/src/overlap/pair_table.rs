@@ -52,7 +52,7 @@ pub(super) struct Place {
 }
 
 impl Place {
-    /// Of radii `small` <= `large` and the squared distance of the centres.
+    /// The place of radii `small` <= `large` and the squared distance of the centres.
     #[inline(always)]
     pub fn new(small: f64, large: f64, square: f64) -> Self {
         let unit = 1.0 / large;

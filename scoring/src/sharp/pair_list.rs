@@ -42,7 +42,7 @@ pub struct PairList {
     pub(super) middle: Vector3<f64>,
     /// Root mean square distance of its pairs from there, Å.
     pub(super) radius: f64,
-    /// Principal axes of its spread, one a column, narrowest first.
+    /// Principal axes of its spread, one per column, narrowest first.
     pub(super) axes: Matrix3<f64>,
     /// Rotation of the ligand before any move.
     matrix: Matrix3<f64>,
@@ -220,7 +220,7 @@ impl PairList {
     }
 }
 
-/// Principal axes of a symmetric matrix, one a column, by rising eigenvalue.
+/// Principal axes of a symmetric matrix, one per column, by rising eigenvalue.
 fn principal_axes(matrix: Matrix3<f64>) -> Matrix3<f64> {
     let parts = matrix.symmetric_eigen();
     let mut order = [0, 1, 2];

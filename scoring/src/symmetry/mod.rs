@@ -302,7 +302,7 @@ mod tests {
         assert_eq!(cyclic("C4").ring(&pose), None);
     }
 
-    /// A moved ring is a ring, and the gradient is what finite moves gain.
+    /// A moved ring is a ring, and the gradient is the gain of finite moves.
     #[test]
     fn conjugation_keeps_rings_and_its_gradient_is_right() {
         let symmetry = cyclic("C5");

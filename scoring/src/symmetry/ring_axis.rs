@@ -155,7 +155,7 @@ impl RingAxis {
         conjugated(pose, self.point, turn, shifted * *self.direction)
     }
 
-    /// Of a gradient by moves of the molecule, turns being about `center`, what [`Self::moved`] gains.
+    /// The part of a gradient by moves of the molecule that [`Self::moved`] gains; turns are about `center`.
     pub fn along(&self, center: Vector3<f64>, gradient: &PoseGradient) -> PoseGradient {
         let axis = *self.direction;
         let torque = gradient.torque + (center - self.point).cross(&gradient.force);

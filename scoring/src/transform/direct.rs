@@ -1,7 +1,7 @@
 //! The direct nufft sum over a box of modes, as fast as it goes without a fast transform.
 //!
 //! f_k = sum_j c_j exp(-2 pi i k.x_j) for several sets of weights c on the same points. Phases are products of three
-//! tables, one an axis (B&I's "cascade" NDFT), so that a point and a mode cost one complex multiplication: O(points x
+//! tables, one per axis (B&I's "cascade" NDFT), so that a point and a mode cost one complex multiplication: O(points x
 //! modes), in vector lanes. For few modes or few points it needs less time than [`super::nufft`], whose grid has a
 //! price too.
 //!

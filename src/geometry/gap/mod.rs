@@ -348,7 +348,7 @@ mod tests {
         };
         let found = gap_ways(&cloud(12, 1.0), &cloud(9, 1.7), 32).unwrap();
         let named = |name: &str| found.iter().find(|way| way.name == name).unwrap();
-        // A grid of three points a radius has an error of its own, which falls with its spacing.
+        // A grid of three points per radius has an error, which falls with its spacing.
         for (name, bound) in [("rasterise + FFT", 6e-3), ("NDFT", 1e-3), ("NFFT", 1e-3)] {
             assert!(named(name).residual < bound, "{name}: {:?}", named(name));
         }

@@ -1,8 +1,8 @@
 //! Minkowski sums and obstacles of solids known by balls.
 //!
 //! B&I, eq. 29 to 44: the obstacle of B to A at a rotation R is the set of translations t at which A and R B + t meet,
-//! A + (-R B). Of balls it is a union of balls again, one for each pair: (a - R b, r + s). In the lifted picture that is
-//! the 4D sum of A's knots with the r-mirrored and reflected ones of B.
+//! A + (-R B). For balls it is a union of balls again, one for each pair: (a - R b, r + s). In the lifted picture that
+//! is the 4D sum of A's knots with the r-mirrored and reflected ones of B.
 //!
 //! Inner with inner balls lie inside the true sum, outer with outer ones hold it, and the Hausdorff bounds add.
 //!

@@ -4,7 +4,7 @@
 //! with itself and then waits; when half as many wait as are kept, all are compared. So the balls in memory are at most
 //! one and a half times the result and a block.
 //!
-//! "Lies in" is exact up to rounding (1e-16 of a coordinate). Of balls equal in all but rounding the first is kept.
+//! "Lies in" is exact up to rounding (1e-16 of a coordinate). The first of balls equal in all but rounding is kept.
 
 use std::cmp::Ordering;
 

@@ -28,7 +28,7 @@ pub fn reading(path: &Path, source: impl Display) -> Error {
         .help("check the disk and the permissions there")
 }
 
-/// A file or folder that is refused, and what to do about it.
+/// A file or folder that is refused, and the remedy.
 pub fn refused(path: &Path, message: impl Display, remedy: impl Display) -> Error {
     Error::input(message).at(path).help(remedy)
 }

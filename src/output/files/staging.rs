@@ -449,7 +449,7 @@ mod tests {
         fs::rename(&directory, &old).unwrap();
         put_back(&directory).unwrap();
         assert_eq!(text(&directory.join("poses.csv")), "first");
-        // A folder of the user's of this name is none.
+        // A user's folder of this name is none.
         fs::remove_dir_all(&directory).unwrap();
         fs::create_dir(&old).unwrap();
         put_back(&directory).unwrap();

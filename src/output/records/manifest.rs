@@ -1,4 +1,4 @@
-//! `run.json`: what was run, on what, by which program, and how well: enough to run it again.
+//! `run.json`: the inputs, options, program and results of a run: enough to run it again.
 //!
 //! `docs/reference/run_json.md` describes each entry. Everything outside the objects `timing` and `machine` is the same, byte for
 //! byte, for the same input, options and CPU feature level.
@@ -69,7 +69,7 @@ pub struct Inputs {
     pub native: Option<NativeRecord>,
 }
 
-/// Counts of what came out.
+/// Counts of the results.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct Results {
     /// Rows of `poses.csv`.

@@ -5,7 +5,7 @@
 //! - **`.csv`**: one row per ball, columns `x,y,z,r` and perhaps `weight`, named by a header or in this order without one
 //!   (`table`). `knotdock sample` writes such tables.
 //! - **`.yml`, `.yaml`, `.json`**: any mapping with a `radius` and a `center` or `origin` of three numbers is a ball
-//!   (`spheres`). This reads cuRobo's `collision_spheres` and what foam writes. Balls are grouped by the link, or the
+//!   (`spheres`). This reads cuRobo's `collision_spheres` and foam's files. Balls are grouped by the link, or the
 //!   level of detail above them.
 //!
 //! Lengths are in the file's unit. Errors carry the line.

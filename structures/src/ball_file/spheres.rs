@@ -2,7 +2,7 @@
 //!
 //! A sphere is a mapping with `radius` and `center` (cuRobo) or `origin` (foam). The innermost key above a list of
 //! spheres names their link, but for foam's `spheres`, which is in a link or in one of several levels of
-//! detail. Of levels the last, finest one is read.
+//! detail. The last and finest level is read.
 //!
 //! JSON is read as the YAML that it is.
 

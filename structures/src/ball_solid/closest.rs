@@ -1,7 +1,7 @@
 //! The signed distance of two unions of balls: best-first descent of two sphere trees.
 //!
 //! The signed distance of a pair of balls is d - r - s. The least over all pairs is the distance of unions that do not
-//! meet. Of unions that meet, it is minus the depth of the deepest pair, which no shorter translation can separate.
+//! meet. For unions that meet, it is minus the depth of the deepest pair, which no shorter translation can separate.
 //!
 //! A pair of nodes is opened only while the balls about them could hold a closer pair than the one known. The larger of
 //! the two is replaced by its halves, the closer half first. The largest balls of two nodes are tried before their

@@ -1,4 +1,4 @@
-//! Volumes of unions of balls, and of what two such unions share.
+//! Volumes of unions of balls, and of the intersection of two such unions.
 //!
 //! Each ball of a union owns the points for which its power, |x - c|^2 - r^2, is the least: its cell of the power
 //! diagram, a convex polyhedron. The union is the sum of the balls' parts in their own cells (`cell`), so volumes are

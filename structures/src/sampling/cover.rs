@@ -133,7 +133,7 @@ fn far_inside(solid: &Solid, field: &DepthField, tree: &BallTree) -> Vec<[f64; 3
 
 /// The ball at the deepest point along the inward normal that is no farther than `reach` from a sample.
 fn deepest_under(solid: &Solid, sample: &SurfaceSample, reach: f64) -> Option<Ball> {
-    // Even steps find the middle of what is about as thick as eps; halving ones that of what is far thinner.
+    // Even steps find the middle of a part about as thick as eps; halving ones that of a far thinner part.
     let even = (1..=16).map(|step| f64::from(step) / 16.0);
     let halving = (5..=40).map(|step| 0.5f64.powi(step));
     let mut best: Option<Ball> = None;

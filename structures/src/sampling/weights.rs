@@ -1,7 +1,7 @@
 //! Weights that make the summed bumps come closest to one inside the solid and to zero outside.
 //!
-//! With weight one a ball, sum_i psi((x - x_i) / r_i) counts the balls about x: overlaps count several times, and the
-//! volume integral sum_i c_i r_i^3 integral(psi) is far above the volume. Here c_i >= 0 minimises the sum over the
+//! If every ball has weight one, sum_i psi((x - x_i) / r_i) counts the balls about x: overlaps count several times, and
+//! the volume integral sum_i c_i r_i^3 integral(psi) is far above the volume. Here c_i >= 0 minimises the sum over the
 //! nodes of (sum_i c_i psi(|x - x_i| / r_i) - 1_S(x))^2: nonnegative least squares with a sparse matrix.
 //!
 //! Coordinate descent sets each weight in turn to its best value or zero. The sum falls at every step, and the limit is

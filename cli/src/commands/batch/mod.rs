@@ -1,4 +1,4 @@
-//! `knotdock batch`: many pairs in one call, and one table of what came of them.
+//! `knotdock batch`: many pairs in one call, and one table of their results.
 
 mod batch_pairs;
 mod docking;

@@ -1,4 +1,4 @@
-//! The graphics processor that is used, and what can go wrong with it.
+//! The graphics processor that is used, and its errors.
 
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Duration;

@@ -175,7 +175,7 @@ pub(super) fn longest_reach(
     )
 }
 
-/// By how much the bound on what dropped modes take may exceed the tolerance. It has them in phase for a pair at its
+/// By how much the bound on the sum of dropped modes may exceed the tolerance. It has them in phase for a pair at its
 /// worst, while whole sums were off by at most a tenth of it (1 to 160 balls, `cut_modes_stay_within_the_tolerance` in
 /// tests/fast_path.rs).
 const SLACK: f64 = 6.0;

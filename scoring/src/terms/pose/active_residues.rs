@@ -77,7 +77,7 @@ mod tests {
         assert_eq!(at([0.0, 0.0, 0.0, 1.0], 20.0, 3.0), 100.0);
     }
 
-    /// Of several sites the one with the largest share counts; shares of different sites do not add up.
+    /// If there are several sites, the one with the largest share counts; shares of different sites do not add up.
     #[test]
     fn one_set_of_several_is_enough() {
         let centers = (1..=4).map(|k| [10.0 * f64::from(k), 0.0, 0.0]).collect();

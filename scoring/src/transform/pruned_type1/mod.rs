@@ -44,7 +44,7 @@ pub struct ForwardWorkspace<T> {
     lines: Vec<Complex<T>>,
     /// [pair of planes][kz][ky].
     line_spectra: Vec<Complex<T>>,
-    /// Of one component, [column][x], zero beyond the block.
+    /// Values of one component, [column][x], zero beyond the block.
     columns: Vec<Complex<T>>,
     scratch: Vec<Complex<T>>,
 }
@@ -57,7 +57,7 @@ struct Lengths {
 }
 
 impl<T: Real> Forward<T> {
-    /// Plans a transform of `components` sets of weights to `modes` over a fine grid of `fine` points an axis, for
+    /// Plans a transform of `components` sets of weights to `modes` over a fine grid of `fine` points per axis, for
     /// knots within `extent` cells of the block's centre on each axis.
     pub fn new(
         modes: Arc<ModeSet>,

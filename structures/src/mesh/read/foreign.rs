@@ -1,4 +1,4 @@
-//! Files of other kinds under a mesh's name, or under none: what they are, and what to give in their place.
+//! Files of other kinds under a mesh's name, or under none: their kinds, and the files to give in their place.
 
 use crate::error::Error;
 use crate::mesh::read::encoding::text_of;
@@ -13,7 +13,7 @@ const DOWNLOAD: &str = "download the file itself: a server sent a page, or an er
 const FETCH: &str = "fetch the file that it stands for with `git lfs pull`";
 const MOLECULE: &str = "give molecules to `knotdock dock`; meshes are STL, OBJ, PLY or OFF files";
 
-/// First bytes of files that are no text, what these are, and what to do.
+/// First bytes of files that are no text, their kinds, and the remedies.
 const BINARY: [(&[u8], &str, &str); 29] = [
     (b"\x1f\x8b", "a gzip archive", UNPACK),
     (b"BZh", "a bzip2 archive", UNPACK),
@@ -110,7 +110,7 @@ pub fn refuse(bytes: &[u8]) -> Result<(), Error> {
     }
 }
 
-/// What a file is that is no mesh to read, and what to do; none where that is not sure.
+/// The kind of a file that is not a mesh, and the remedy; none if that is not sure.
 fn kind_of(bytes: &[u8]) -> Option<(&'static str, &'static str)> {
     if bytes.starts_with(b"PK\x03\x04") || bytes.starts_with(b"PK\x05\x06") {
         return Some(zip(bytes));

@@ -61,7 +61,7 @@ pub(crate) fn is_site_name(name: &str, column: &str) -> bool {
 }
 
 /// The plain name of a residue: of a protonation state or a disulphide's half the amino acid (`CYX` is `CYS`), of a
-/// nucleotide its base as one letter (`DA`, `ADE` and `RA3` are `A`). Of all others the name itself.
+/// nucleotide its base as one letter (`DA`, `ADE` and `RA3` are `A`). For all others the name itself.
 pub fn plain_residue_name(residue_name: &str) -> &str {
     base(residue_name).unwrap_or_else(|| parent(residue_name))
 }

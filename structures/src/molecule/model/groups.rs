@@ -1,4 +1,4 @@
-//! Residues as wholes: which atoms belong together, and what kind of group they make.
+//! Residues as wholes: which atoms belong together, and the kind of their group.
 
 use std::borrow::Cow;
 use std::collections::{HashMap, HashSet};
@@ -269,7 +269,7 @@ mod tests {
             atom("ALA", 1, "N"),
             atom("ALA", 1, "CA"),
             atom("GLY", 2, "N"),
-            // Hydrogens at the end of their chain belong to what stands before.
+            // Hydrogens at the end of their chain belong to the group before.
             atom("ALA", 1, "HA"),
             atom("GLY", 2, "HA"),
         ];

@@ -293,7 +293,7 @@ pub struct JoinedModels {
 pub enum ConfidenceSource {
     /// The file says so: `_ma_qa_metric` of ModelCIF.
     Header,
-    /// The values of the B column look like a prediction's: one a residue, or high ones with a tail of low ones.
+    /// The values of the B column look like a prediction's: one per residue, or high ones with a tail of low ones.
     Values,
     /// The user gave a least pLDDT, and the B column can hold pLDDT.
     User,

@@ -49,7 +49,7 @@ pub struct TurningBond {
 }
 
 impl SideChain {
-    /// The chi angles in radians, -pi to pi, of the atoms at `positions` (Å, one an atom of the molecule).
+    /// The chi angles in radians, -pi to pi, of the atoms at `positions` (Å, one per atom of the molecule).
     pub fn chi(&self, positions: &[[f64; 3]]) -> Vec<f64> {
         let of = |bond: &TurningBond| dihedral(bond.atoms.map(|atom| positions[atom]));
         self.bonds.iter().map(of).collect()
@@ -292,7 +292,7 @@ impl<'a> SideChainBonds<'a> {
         }
     }
 
-    /// Whether one of these atoms of a residue is bonded outside of it, and to what. The first reason in the order of
+    /// The reason why a side chain is held: a bond of one of these atoms outside its residue. The first in the order of
     /// [`HeldSideChain`] counts.
     fn held(&self, residue: &Residue<'_>, side_chain: &[usize]) -> Option<HeldSideChain> {
         let mut held: Option<HeldSideChain> = None;

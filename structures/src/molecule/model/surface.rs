@@ -15,7 +15,8 @@ const CROWD: usize = 2048;
 
 impl Molecule {
     /// Accessible area of each atom in Å^2, from `points` points on each sphere ([`spiral`]); 200 give a total within
-    /// about 1%. Of atoms with one position and one radius the first has the area of all. O(atoms x points x neighbours).
+    /// about 1%. Among atoms with one position and one radius the first has the area of all. O(atoms x points x
+    /// neighbours).
     pub fn accessible_areas(&self, points: usize) -> Vec<f64> {
         let sphere = spiral(points.max(1));
         let grown: Vec<f64> = self.atoms.iter().map(|atom| atom.radius + PROBE).collect();

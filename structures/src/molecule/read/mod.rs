@@ -32,7 +32,7 @@ use crate::Error;
 use crate::molecule::chemistry::{all_atom_radius, radius};
 use crate::molecule::model::{Atom, DropKind, Format, Molecule, ReadReport, residues};
 
-/// An atom of the model that was read, and what became of it.
+/// An atom of the model that was read, and whether it was kept.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtomFate {
     /// The atom; its radius is 0 and its element may be empty if it was dropped.

@@ -1,7 +1,7 @@
 //! Atoms by pdbtbx, which reads their names, kinds of record and, of PDB files, coordinates, occupancies and
 //! temperature factors.
 //!
-//! pdbtbx 0.12 refuses or panics on much of what real files hold. Examples are free-form REMARK, short ATOM lines, odd
+//! pdbtbx 0.12 refuses or panics on much content of real files. Examples are free-form REMARK, short ATOM lines, odd
 //! charge columns, old DBREF and SEQADV, dummy CRYST1, blank residue names, and mmCIF values that a number or a quote
 //! breaks. So it is given the atoms of the wanted models alone, each as a repaired record with a serial number. The
 //! [`Record`](crate::molecule::read::record::Record) of that number keeps what pdbtbx would change:
@@ -40,7 +40,7 @@ pub(crate) const MMCIF_HEADER: &str = "data_atoms\nloop_\n_atom_site.group_PDB\n
 _atom_site.label_alt_id\n_atom_site.label_comp_id\n_atom_site.label_asym_id\n_atom_site.label_seq_id\n\
 _atom_site.pdbx_PDB_ins_code\n_atom_site.type_symbol\n_atom_site.Cartn_x\n_atom_site.Cartn_y\n_atom_site.Cartn_z\n";
 
-/// Takes the records of a file's contents, with what pdbtbx reads of their text.
+/// Takes the records of a file's contents, with the text that pdbtbx reads.
 pub(crate) fn records(format: Format, contents: &mut FileContents) -> Result<Vec<Record>, Error> {
     let text = std::mem::take(&mut contents.text);
     let mut records = std::mem::take(&mut contents.records);

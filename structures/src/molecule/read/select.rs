@@ -221,7 +221,7 @@ fn membrane(records: &[Record], pseudo_atoms: &[Option<String>]) -> Option<[f64;
     (is_flat && high - low > FLAT).then_some([low, high])
 }
 
-/// Of each record the name under which the tables have its residue.
+/// The name of each record's residue in the tables.
 fn known_names(records: &[Record]) -> Vec<&str> {
     let mut known: Vec<&str> = Vec::with_capacity(records.len());
     let mut others: HashMap<ResidueKey<'_>, Vec<usize>> = HashMap::new();

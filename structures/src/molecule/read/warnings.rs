@@ -230,7 +230,7 @@ struct Overlap {
 
 /// Atoms on top of atoms of other residues: chains, copies and residues that a file holds twice in one place.
 fn overlaps(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<String> {
-    // Atoms without any place of their own have a warning of their own, or are made up.
+    // Atoms that all share one place have their own warning, or are made up.
     if atoms
         .windows(2)
         .all(|pair| pair[0].position == pair[1].position)
@@ -315,7 +315,7 @@ fn on_top(atoms: &[Atom], residues: &[Residue<'_>]) -> Vec<(usize, usize, f64)> 
     }
     let positions = atoms.iter().map(|atom| atom.position);
     let cells = SpatialHash::of_crowded_points(positions, ONE_NUMBER, MAX_IN_CELL);
-    // What repeats the residue and the name of another has a warning of its own.
+    // An atom that repeats the residue and the name of another has its own warning.
     let is_on = |own: &Residue<'_>, there: &Residue<'_>, squared: f64| {
         let limit = if is_one_number(own, there) {
             ONE_NUMBER
@@ -441,7 +441,7 @@ mod tests {
         assert_eq!(martini.len(), 1);
         let expected = "2 of 2 amino acids are coarse-grained (beads BB, SC1)";
         assert!(martini[0].starts_with(expected), "{martini:?}");
-        // A trace has a warning of its own.
+        // A trace has its own warning.
         assert!(of(&[("ALA", 1, &["CA"]), ("LEU", 2, &["CA"])]).is_empty());
         let nucleic = of(&[("DA", 1, &["P", "O5'"]), ("DT", 2, &["P", "O5'"])]);
         assert!(nucleic[0].starts_with("mostly nucleic acid (2 nucleotides, 0 amino acids)"));

@@ -16,7 +16,7 @@ pub enum Partner {
     Receptor,
     /// The molecule that is placed.
     Ligand,
-    /// Of a ring of one molecule a further copy, the receptor being the first and the ligand the second.
+    /// A further copy in a ring of one molecule; the receptor is the first and the ligand the second.
     Copy(usize),
 }
 

@@ -84,7 +84,7 @@ pub(super) fn write_end<W: Write>(writer: &mut W) -> io::Result<()> {
 
 /// Writes rows that [`check`] has passed.
 pub(super) fn write_atoms<W: Write>(writer: &mut W, rows: &[Row<'_>]) -> io::Result<()> {
-    // TER takes a serial number of its own, unless that would be the 100,000th.
+    // TER takes a serial number, unless that would be the 100,000th.
     let ends = rows.iter().filter(|row| row.ends_chain).count();
     let numbers_ends = rows.len() + ends <= 99_999;
     let mut serial = 0;
