@@ -10,7 +10,7 @@ const PANEL: f64 = 330.0;
 /// How a ball looks.
 const SEEN: &str = "fill=\"url(#ball)\" stroke=\"#703010\" stroke-width=\"0.2\"";
 
-/// The rotations, as Euler angles relative to the scene.
+/// Rotations of the peg from its place in the scene, as Euler angles in radians.
 const ROTATIONS: [[f64; 3]; 2] = [[0.0, 0.0, 0.0], [1.1, 0.5, -0.9]];
 
 /// The picture, as SVG.

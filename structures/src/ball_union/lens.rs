@@ -4,9 +4,9 @@ use std::f64::consts::PI;
 
 /// Volume that two balls of radii a and b share at a distance of their centres, in the cube of their unit.
 ///
-/// It is that of the smaller ball while d <= |a - b|. Else it is that of the two caps, pi (a + b - d)^2 (d^2 + 2 d (a +
-/// b) - 3 (a - b)^2) / (12 d), written without differences of large numbers. Source: Weisstein, "Sphere-Sphere
-/// Intersection", MathWorld.
+/// It is that of the smaller ball while d <= |a - b|. Else it is that of the two caps,
+/// pi (a + b - d)^2 (d^2 + 2 d (a + b) - 3 (a - b)^2) / (12 d), written without differences of large numbers.
+/// Source: Weisstein, "Sphere-Sphere Intersection", MathWorld.
 pub fn lens_volume(a: f64, b: f64, distance: f64) -> f64 {
     let (a, b) = (a.max(b), a.min(b));
     // How far the smaller ball leaves the larger one, of the 2 b that it can.
