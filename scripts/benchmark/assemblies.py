@@ -108,7 +108,7 @@ def wavy(name, size, height, clearance):
 def box_and_lid():
     case = box([-20, -15, 0], [20, 15, 20]) - box([-16, -11, 4], [16, 11, 30])
     c = CLEARANCE
-    lid = box([-20, -15, 20 + c], [20, 15, 24 + c]) + box([-16 + c, -11 + c, 15 + c], [16 - c, 11 - c, 22 + c])
+    lid = box([-20, -15, 20 + c], [20, 15, 24 + c]) + box([-16 + c, -11 + c, 10 + c], [16 - c, 11 - c, 22 + c])
     about_z = [half_turn([0, 0, 1])]
     return Pair("box_lid", mesh(case), mesh(lid), receptor_symmetry=about_z, ligand_symmetry=about_z)
 
@@ -137,7 +137,7 @@ def jigsaw():
 
     right = CrossSection.square([30, 34]).translate([24, 0]) - left.offset(CLEARANCE, JoinType.Round)
     right = right ^ CrossSection.square([60, 60]).translate([25 + CLEARANCE, -10])
-    return Pair("jigsaw", mesh(left.extrude(9)), mesh(right.extrude(9)))
+    return Pair("jigsaw", mesh(left.extrude(22)), mesh(right.extrude(22)))
 
 
 def ball_and_socket():
@@ -164,10 +164,10 @@ def dovetail():
 def vase():
     z = np.linspace(0, 60, 61)
     outer = 16 + 6 * np.sin(z / 11) - 3 * (z / 60) ** 2
-    inner = (outer - 4.5)[z >= 4.5]
-    profile = [[0, 0], *zip(outer, z), *reversed(list(zip(inner, z[z >= 4.5]))), [0, 4.5]]
+    inner = (outer - 6.5)[z >= 6.5]
+    profile = [[0, 0], *zip(outer, z), *reversed(list(zip(inner, z[z >= 6.5]))), [0, 6.5]]
     body = CrossSection([profile]).revolve(96).rotate([90, 0, 0])
-    return Pair("vase", *cut(body, lambda x, y: 2.5 * np.sin(y / 5) + 1.5 * np.cos(x / 4), CLEARANCE, 100))
+    return Pair("vase", *cut(body, lambda x, y: 3 * np.sin(y / 5) + 2 * np.cos(x / 4), CLEARANCE, 100))
 
 
 def gear():

@@ -9,9 +9,9 @@ use crate::dock::plan::{DockPlan, plan, plan_scene};
 use crate::dock::run::molecule_points;
 use crate::dock::scene::Scene;
 use crate::dock::stopwatch::timed;
-use crate::mesh::samplers::{RESOLUTION, Sampler};
+use crate::mesh::samplers::RESOLUTION;
 use crate::mesh::{CLUSTER_RADIUS, MeshOptions, MeshPair, MeshSceneError, Shape, sample_pair};
-use crate::options::{DockOptions, SampleWeights};
+use crate::options::DockOptions;
 use knotdock_structures::Error;
 
 /// Two bodies, the receptor first.
@@ -94,18 +94,23 @@ impl PreparedPair {
 /// Makes dockings of a pair ready, with the samplings of its meshes that were needed so far.
 pub struct Preparer<'a> {
     pair: Pair<'a>,
-    sampled: Vec<(SamplingKey, Arc<Sampling>)>,
+    sampled: Vec<(MeshOptions, Arc<Sampling>)>,
 }
 
-/// What a sampling depends on, of one pair and one offset.
-type SamplingKey = (usize, SampleWeights, Sampler);
-
-fn key(options: &DockOptions) -> SamplingKey {
-    (
-        options.sampling.sample_grid.unwrap_or_default().per_axis,
-        options.sampling.sample_weights.unwrap_or_default(),
-        options.sampling.sampler.unwrap_or_default(),
-    )
+/// The sampling that options ask for, which have all lengths.
+fn mesh_options(options: &DockOptions) -> MeshOptions {
+    let (sampling, kernel) = (&options.sampling, &options.kernel);
+    MeshOptions {
+        per_axis: sampling.sample_grid.unwrap_or_default().per_axis,
+        sampler: sampling.sampler.unwrap_or_default(),
+        offset: Some(kernel.offset),
+        weights: sampling.sample_weights.unwrap_or_default(),
+        alpha: kernel.alpha,
+        lambda: kernel.lambda,
+        resolution: Some(kernel.resolution),
+        pass_length: kernel.pass_length,
+        memory: options.machine.memory,
+    }
 }
 
 impl<'a> Preparer<'a> {
@@ -115,7 +120,7 @@ impl<'a> Preparer<'a> {
         Self {
             pair,
             sampled: sampled
-                .map(|sampling| (key(options), Arc::clone(sampling)))
+                .map(|sampling| (mesh_options(options), Arc::clone(sampling)))
                 .collect(),
         }
     }
@@ -140,21 +145,11 @@ impl<'a> Preparer<'a> {
         solids: [Shape; 2],
         options: &DockOptions,
     ) -> Result<Arc<Sampling>, Error> {
-        let wanted = key(options);
+        let wanted = mesh_options(options);
         if let Some((_, known)) = self.sampled.iter().find(|(known, _)| *known == wanted) {
             return Ok(Arc::clone(known));
         }
-        let (per_axis, weights, sampler) = wanted;
-        let sampling = Arc::new(Sampling::of(
-            solids,
-            &MeshOptions {
-                per_axis,
-                sampler,
-                offset: Some(options.kernel.offset),
-                weights,
-                alpha: options.kernel.alpha,
-            },
-        )?);
+        let sampling = Arc::new(Sampling::of(solids, &wanted)?);
         self.sampled.push((wanted, Arc::clone(&sampling)));
         Ok(sampling)
     }

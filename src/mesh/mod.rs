@@ -27,8 +27,14 @@ use serde::{Deserialize, Serialize};
 use std::fmt;
 
 use crate::geometry::bracket::{bounds, shifted};
-use crate::mesh::samplers::{BallsToWeigh, PartToSample, Sampler, bi, lattice, union};
+use crate::mesh::samplers::double_skin::DoubleSkinFit;
+use crate::mesh::samplers::{
+    BallsToWeigh, PartToSample, RESOLUTION, Sampler, SamplerError, bi, lattice, union,
+};
+use knotdock_scoring::kernel::{KernelOptions, Trim};
 
+/// Default pass length of the low-pass, in resolutions.
+pub const PASS_RATIO: f64 = 2.0;
 /// Default radius of clusters in offsets: that of molecules.
 pub const CLUSTER_RADIUS: f64 = 5.0 / 2.2;
 /// Length in place of one Ångström, in offsets.
@@ -63,6 +69,29 @@ pub struct MeshOptions {
     pub weights: SampleWeights,
     /// Exponent alpha of the bump function.
     pub alpha: f64,
+    /// Penalty lambda of overlap.
+    pub lambda: f64,
+    /// Resolution; `None`: [`RESOLUTION`] offsets.
+    pub resolution: Option<f64>,
+    /// Pass length of the low-pass; `None`: [`PASS_RATIO`] resolutions.
+    pub pass_length: Option<f64>,
+    /// Bytes that the fit of a part's weights may take; `None`: any number.
+    pub memory: Option<u64>,
+}
+
+impl MeshOptions {
+    /// The kernel at an offset, its lengths in `unit`.
+    fn kernel(&self, offset: f64, unit: f64) -> KernelOptions {
+        let resolution = self.resolution.unwrap_or(RESOLUTION * offset);
+        KernelOptions {
+            lambda: self.lambda,
+            offset: offset / unit,
+            alpha: self.alpha,
+            resolution: resolution / unit,
+            pass_length: self.pass_length.unwrap_or(PASS_RATIO * resolution) / unit,
+            trim: Trim::FlatTop,
+        }
+    }
 }
 
 /// Content of a part that docks.
@@ -140,9 +169,16 @@ fn of_part(part: usize, message: impl fmt::Display, remedy: &str) -> MeshSceneEr
 }
 
 /// A part that cannot be sampled.
-fn unsampled(part: usize, error: &SampleError) -> MeshSceneError {
-    let remedy =
-        "check that the mesh is closed and one solid, or sample it on a finer --sample-grid";
+fn unsampled(part: usize, error: &SamplerError) -> MeshSceneError {
+    let remedy = match error {
+        SamplerError::Sample(_) => {
+            "check that the mesh is closed and one solid, or sample it on a finer --sample-grid"
+        }
+        SamplerError::Memory { .. } => {
+            "allow more --memory, or give a larger --offset or --sample-weights unit"
+        }
+        _ => "give another --resolution, or --sample-weights unit",
+    };
     of_part(part, error, remedy)
 }
 
@@ -174,8 +210,8 @@ pub struct SampledPart {
     pub feature_size: f64,
     /// The fit of the weights; `null` if they are one.
     pub weights: Option<FittedWeights>,
-    /// The fit of the weights of the grown balls; `null` if there are none.
-    pub skin_weights: Option<FittedWeights>,
+    /// The fit of the double skin; `null` without one.
+    pub double_skin: Option<DoubleSkinFit>,
 }
 
 /// Two parts that are to be docked.
@@ -224,7 +260,7 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
     let resolved = epsilons[0] + epsilons[1];
     for (part, measured) in measured.iter().enumerate() {
         if measured.inside == 0 {
-            return Err(unsampled(part, &SampleError::NothingInside));
+            return Err(unsampled(part, &SampleError::NothingInside.into()));
         }
         let feature = features[part];
         if feature < 0.5 * resolved {
@@ -305,7 +341,7 @@ impl<'a> Measured<'a> {
                 Self {
                     shape,
                     grid,
-                    inside: union(grid, &about(middle, &part.balls)).inside().len(),
+                    inside: union(grid, &about(middle, &part.balls), 0.0).inside().len(),
                     field: None,
                     unit: 1.0,
                     middle,
@@ -326,16 +362,18 @@ impl<'a> Measured<'a> {
         offset: f64,
         options: &MeshOptions,
     ) -> Result<SampledPart, MeshSceneError> {
-        let bump = Bump::new(options.alpha)
+        let kernel = options.kernel(offset, self.unit);
+        Bump::new(kernel.alpha)
             .map_err(|error| of_part(index, error, "give --alpha a number above zero"))?;
-        let fitted = (options.weights == SampleWeights::Fitted).then_some(bump);
+        let kernel = (options.weights == SampleWeights::Fitted).then_some(kernel);
         let found = match (self.shape, &self.field, options.sampler) {
             (Shape::Solid(solid), Some(field), sampler) => {
                 let part = PartToSample {
                     solid,
                     field,
                     offset: offset / self.unit,
-                    fitted,
+                    kernel,
+                    room: options.memory,
                 };
                 let sample = match sampler {
                     Sampler::Lattice => lattice::sample,
@@ -348,8 +386,10 @@ impl<'a> Measured<'a> {
                 weights: part.weights.as_deref(),
                 grid: self.grid,
                 offset,
-                fitted,
-            }),
+                kernel,
+                room: options.memory,
+            })
+            .map_err(|error| unsampled(index, &error))?,
             _ => {
                 let message =
                     "the part is balls already, which this sampler cannot take as they are";
@@ -382,7 +422,7 @@ impl<'a> Measured<'a> {
             inside_nodes: self.inside,
             feature_size: self.feature_size,
             weights: found.fit,
-            skin_weights: found.skin_fit,
+            double_skin: found.skin_fit,
         })
     }
 }

@@ -43,8 +43,7 @@ options! {
     }
 }
 
-/// Default pass length as a multiple of the resolution.
-pub const PASS_RATIO: f64 = 2.0;
+pub use crate::mesh::PASS_RATIO;
 
 impl KernelOptions {
     /// The options as the engine takes them.

@@ -3,8 +3,7 @@
 
 use super::parts::Pair;
 use super::run::{Place, dock, rank_one, scored_poses};
-use super::scenes::{broken, error, peg, saddle, studs, torus};
-use knotdock_scoring::se3::Pose;
+use super::scenes::{broken, error, peg, saddle, torus};
 use serde_json::Value;
 
 /// A run with the defaults but for the numbers of rotations and poses.
@@ -76,60 +75,6 @@ fn a_broken_block_is_put_together() {
 #[test]
 fn halves_of_a_saddle_block_close() {
     put_together(saddle());
-}
-
-/// CPU seconds of the processes that this one ran, where the system says so.
-fn seconds_of_children() -> f64 {
-    let stat = std::fs::read_to_string("/proc/self/stat").unwrap_or_default();
-    // After the name, in brackets: user and system time of children are the 14th and 15th entry, in hundredths.
-    let entries = stat.rsplit(") ").next().unwrap_or_default().split(' ');
-    let ticks = entries
-        .skip(13)
-        .take(2)
-        .filter_map(|entry| entry.parse::<f64>().ok());
-    ticks.sum::<f64>() / 100.0
-}
-
-/// Both samplers on all pairs, as the table of docs/method/mesh_docking.md.
-#[test]
-#[ignore = "ten dockings for a table"]
-fn samplers() {
-    println!(
-        "| pair | sampler | balls | rank of the right pose | off by, grid steps | degrees | best wrong cluster's share | CPU s |"
-    );
-    for (pair, clearance) in [peg(), torus(), broken(), saddle(), studs()] {
-        let place = Place::of(&pair);
-        for sampler in ["lattice", "bi"] {
-            let before = seconds_of_children();
-            let run = docked(&place, &["--sampler", sampler]);
-            let seconds = seconds_of_children() - before;
-            let run = &run["run"];
-            let step = run["plan"]["spacing"].as_f64().unwrap();
-            let is_right = |pose: &Pose| {
-                let (distance, degrees) = error(&pair, pose);
-                distance <= 1.5 * clearance && degrees <= 10.0
-            };
-            let rows = scored_poses(&place.path("run/poses.csv"));
-            let right = rows.iter().position(|(pose, _)| is_right(pose));
-            let found = right.map_or("- | - | - | -".to_owned(), |rank| {
-                let (distance, degrees) = error(&pair, &rows[rank].0);
-                let wrong = rows.iter().find(|(pose, _)| !is_right(pose));
-                let share = wrong.map_or(0.0, |(_, score)| score / rows[rank].1);
-                format!(
-                    "{} | {:.2} | {degrees:.1} | {share:.2}",
-                    rank + 1,
-                    distance / step
-                )
-            });
-            println!(
-                "| {} | {sampler} | {} and {} | {found} | {:.1} |",
-                pair.name,
-                run["inputs"]["receptor"]["sampling"]["balls"],
-                run["inputs"]["ligand"]["sampling"]["balls"],
-                seconds,
-            );
-        }
-    }
 }
 
 /// What fitted weights do to the summed bumps and to scores, as the table of docs/method/mesh_docking.md: fitted ones

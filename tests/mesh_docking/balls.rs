@@ -45,12 +45,9 @@ fn files_of_balls_dock_as_meshes_do() {
         );
         let receptor = &run["run"]["inputs"]["receptor"];
         assert_eq!(receptor["report"]["balls"], receptor["sampling"]["balls"]);
-        assert!(
-            receptor["sampling"]["skin_weights"]["rms_fitted"]
-                .as_f64()
-                .unwrap()
-                < 1.0
-        );
+        let fit = &receptor["sampling"]["double_skin"];
+        let [rms, target] = ["rms", "rms_of_target"].map(|name| fit[name].as_f64().unwrap());
+        assert!(rms < 0.2 * target, "{fit}");
         let poses = scored_poses(&place.path("run/poses.csv"));
         assert!(poses[0].1 > 0.0);
         let shown = fs::read_to_string(place.path("run/top/rank_0001.obj")).unwrap();

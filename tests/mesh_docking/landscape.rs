@@ -23,6 +23,10 @@ fn sampled(pair: &Pair) -> MeshPair {
         offset: None,
         weights: SampleWeights::Fitted,
         alpha: 2.0,
+        lambda: 9.0,
+        resolution: None,
+        pass_length: None,
+        memory: None,
     };
     {
         let solids = [solid(&pair.receptor), solid(&pair.ligand)];
@@ -135,9 +139,15 @@ fn flat_faces_are_drawn_to_a_gap_of_one_offset() {
     check_gaps(&scores, [13, 31, 6]);
 }
 
-/// The same of the product kernel, from the profiles of its double skin: below zero under half an offset.
+/// The same of the product kernel: below zero under half an offset.
 #[test]
 fn double_skins_are_drawn_to_a_gap_of_one_offset() {
+    check_gaps(&double_skin_scores(), [14, 29, 9]);
+}
+
+/// Scores of two flat faces per area, in offsets, at gaps from 0 in twentieths of an offset: the correlation of the
+/// profiles of their double skins through the low-pass.
+pub fn double_skin_scores() -> Vec<f64> {
     let (lambda, depth) = (9.0, 4.0);
     // A body's profile in offsets: 1 - lambda up to CORE beyond its face, then 1 as deep as the skin.
     let profile = |x: f64| match x {
@@ -168,16 +178,14 @@ fn double_skins_are_drawn_to_a_gap_of_one_offset() {
         };
         2.0 * stop / f64::from(count) * (0..count).map(wave).sum::<f64>()
     };
-    let scores: Vec<f64> = (0..=60)
-        .map(|i| 0.05 * f64::from(i))
-        .map(|gap| {
-            sharp
-                .iter()
-                .map(|(at, value)| value * filter(gap - at) * step)
-                .sum()
-        })
-        .collect();
-    check_gaps(&scores, [14, 29, 9]);
+    let gaps = (0..=60).map(|i| 0.05 * f64::from(i));
+    let score = |gap: f64| {
+        let parts = sharp.iter();
+        parts
+            .map(|(at, value)| value * filter(gap - at) * step)
+            .sum()
+    };
+    gaps.map(score).collect()
 }
 
 /// Checks that scores at gaps from 0 in twentieths of an offset are best at one offset, above half of that from `from`

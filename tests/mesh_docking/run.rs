@@ -134,7 +134,7 @@ fn repeats_itself(more: &[&str]) {
     for side in ["receptor", "ligand"] {
         let sampling = &run["inputs"][side]["sampling"];
         assert_eq!(sampling["sampler"], more[1]);
-        assert_eq!(sampling["skin_weights"].is_null(), more[1] == "lattice");
+        assert_eq!(sampling["double_skin"].is_null(), more[1] == "lattice");
     }
     assert_eq!(run["plan"]["unit"], "file");
     assert_eq!(run["chains"], Value::Null);

@@ -2,7 +2,6 @@
 
 use super::parts::{
     HalfTurnAxis, Pair, Part, broken_block, linked_torus, peg_and_hole, saddle_block,
-    studded_plates,
 };
 use knotdock::options::SampleGrid;
 use knotdock_scoring::se3::Pose;
@@ -54,11 +53,6 @@ pub fn broken() -> (Pair, f64) {
 /// The block cut along a saddle, and its clearance.
 pub fn saddle() -> (Pair, f64) {
     with_least_clearance(saddle_block)
-}
-
-/// The plates with studs, and their clearance.
-pub fn studs() -> (Pair, f64) {
-    with_least_clearance(studded_plates)
 }
 
 pub fn solid(part: &Part) -> Solid {

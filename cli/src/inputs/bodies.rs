@@ -20,7 +20,6 @@ use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::InputSpec;
-use knotdock_structures::sampling::weights::FittedWeights;
 
 pub enum Bodies {
     /// Two molecules, which stays first.
@@ -254,6 +253,10 @@ pub fn sampled(
         weights: *options.sampling.sample_weights.get_or_insert_default(),
         offset,
         alpha: options.kernel.alpha,
+        lambda: options.kernel.lambda,
+        resolution: lengths.resolution.then_some(options.kernel.resolution),
+        pass_length: options.kernel.pass_length,
+        memory: options.machine.memory,
     };
     room_to_sample(sampling.per_axis, options.machine.memory)?;
     let solids = inputs.each_ref().map(ShapeInput::shape);
@@ -281,20 +284,16 @@ fn brief_sampling_text(pair: &MeshPair) -> String {
 /// Report on the sampling of the meshes.
 fn sampling_text(pair: &MeshPair) -> String {
     let [receptor, ligand] = pair.parts.each_ref().map(|part| {
-        let fitted = |fit: &FittedWeights| {
-            format!(
-                "off one inside by {:.2} rms, integral {:.3} of the volume",
+        let weights = match (&part.weights, &part.double_skin) {
+            (Some(fit), _) => format!(
+                "weights fitted (off one inside by {:.2} rms, integral {:.3} of the volume)",
                 fit.rms_fitted, fit.volume_fitted
-            )
-        };
-        let weights = match (&part.weights, &part.skin_weights) {
-            (Some(fit), None) => format!("weights fitted ({})", fitted(fit)),
-            (Some(fit), Some(skin)) => format!(
-                "weights fitted ({}; grown balls {})",
-                fitted(fit),
-                fitted(skin)
             ),
-            (None, _) => "weights of one".to_owned(),
+            (None, Some(skin)) => format!(
+                "weights fitted (double skin off by {:.2} of {:.2} rms near the surface, {} steps)",
+                skin.rms, skin.rms_of_target, skin.steps
+            ),
+            (None, None) => "weights of one".to_owned(),
         };
         let (low, high) = (part.smallest_radius, part.radius);
         let radii = match part.per_cell {

@@ -14,23 +14,23 @@
 //! g)^2. K is the ranking kernel. With these lengths and lambda = 9 E is greatest at g = r0, above half of that from
 //! 0.65 to 1.55 r0, and below zero under 0.3 r0.
 
-use knotdock_structures::sampling::SampleError;
+use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampling::lattice::lattice;
 use knotdock_structures::sampling::weights;
 
-use super::{PartToSample, RESOLUTION, WeightedBalls};
+use super::{PartToSample, RESOLUTION, SamplerError, WeightedBalls};
 
 /// Radius of the balls in offsets: 2.5 Å for an offset of 2.2 Å.
 pub const RADIUS: f64 = 2.5 / 2.2;
 /// Widest cell of the lattice in offsets: half the default resolution.
 const CELL: f64 = 0.5 * RESOLUTION;
 
-pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, SampleError> {
+pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, SamplerError> {
     let unit = part.solid.frame().unit;
     let (offset, spacing) = (part.offset * unit, part.field.grid.spacing() * unit);
     let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);
     let balls = lattice(part.field, per_cell, RADIUS * offset / unit);
-    let bump = part.fitted;
+    let bump = part.kernel.and_then(|kernel| Bump::new(kernel.alpha).ok());
     let fit = bump.map(|bump| weights::fit(part.field, &balls, bump, part.volume()));
     let weight = |place: usize| fit.as_ref().map_or(1.0, |fit| fit.weights[place]);
     let weighted = balls

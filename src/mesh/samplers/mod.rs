@@ -1,14 +1,16 @@
 //! Samplers of meshes that dock: how a solid becomes weighted balls, and which kernel correlates these.
 
 pub mod bi;
+pub mod double_skin;
 pub mod lattice;
 
+use double_skin::DoubleSkinFit;
+use knotdock_scoring::kernel::{KernelError, KernelOptions};
 use knotdock_structures::mesh::Solid;
-use knotdock_structures::numeric::Bump;
-use knotdock_structures::sampling::Ball;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::hausdorff::HausdorffMeter;
 use knotdock_structures::sampling::weights::FittedWeights;
+use knotdock_structures::sampling::{Ball, SampleError};
 use serde::{Deserialize, Serialize};
 
 /// A sampler.
@@ -45,7 +47,7 @@ impl Sampler {
     pub fn alpha(self) -> f64 {
         match self {
             Self::Lattice => 2.0,
-            Self::Bi => 16.0,
+            Self::Bi => 6.0,
         }
     }
 
@@ -53,6 +55,31 @@ impl Sampler {
     pub fn skin(self) -> Option<f64> {
         (self == Self::Bi).then_some(bi::SKIN)
     }
+}
+
+/// Why a part has no balls to dock.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub(super) enum SamplerError {
+    #[error(transparent)]
+    Sample(#[from] SampleError),
+    #[error(transparent)]
+    Kernel(#[from] KernelError),
+    /// The fit of the double skin needs too many nodes, along an axis.
+    #[error(
+        "at a resolution of {resolution:.3e} weights would be fitted on {nodes} nodes an axis; at most {most} are possible"
+    )]
+    Nodes {
+        resolution: f64,
+        nodes: usize,
+        most: usize,
+    },
+    /// It needs too much memory.
+    #[error("the fit of the weights of {balls} balls needs {:.0} MB of memory, and {:.0} MB are allowed", needed / 1e6, *room as f64 / 1e6)]
+    Memory {
+        balls: usize,
+        needed: f64,
+        room: u64,
+    },
 }
 
 /// Default resolution in offsets: that of molecules.
@@ -66,15 +93,19 @@ pub(super) struct BallsToWeigh<'a> {
     /// The grid that weights are fitted on.
     pub grid: Grid,
     pub offset: f64,
-    /// The bump whose weights are fitted; `None`: weights are one.
-    pub fitted: Option<Bump>,
+    /// The kernel that weights are fitted to; `None`: weights are one.
+    pub kernel: Option<KernelOptions>,
+    /// Bytes that the fit may take.
+    pub room: Option<u64>,
 }
 
-/// The nodes in a union of balls: depth one inside and minus one outside.
-pub(super) fn union(grid: Grid, balls: &[Ball]) -> DepthField {
-    let mut depth = vec![-1.0; grid.nodes()];
+/// Depths of nodes in the deepest of some balls; those `reach` outside all of them or farther are that far.
+pub(super) fn union(grid: Grid, balls: &[Ball], reach: f64) -> DepthField {
+    let mut depth = vec![-reach; grid.nodes()];
     for ball in balls {
-        grid.visit_ball(ball.center, ball.radius, |node, _| depth[node] = 1.0);
+        grid.visit_ball(ball.center, ball.radius + reach, |node, squared| {
+            depth[node] = depth[node].max(ball.radius - squared.sqrt());
+        });
     }
     DepthField { grid, depth }
 }
@@ -86,8 +117,10 @@ pub(super) struct PartToSample<'a> {
     pub field: &'a DepthField,
     /// Offset r0, in the solid's unit.
     pub offset: f64,
-    /// The bump whose weights are fitted; `None`: weights are one.
-    pub fitted: Option<Bump>,
+    /// The kernel that weights are fitted to, in the solid's unit; `None`: weights are one.
+    pub kernel: Option<KernelOptions>,
+    /// Bytes that the fit may take.
+    pub room: Option<u64>,
 }
 
 impl PartToSample<'_> {
@@ -110,8 +143,8 @@ pub(super) struct WeightedBalls {
     pub per_cell: Option<usize>,
     /// The fit of the weights, if they were fitted.
     pub fit: Option<FittedWeights>,
-    /// The fit of the skin's weights.
-    pub skin_fit: Option<FittedWeights>,
+    /// The fit of the double skin.
+    pub skin_fit: Option<DoubleSkinFit>,
 }
 
 #[cfg(test)]

@@ -69,6 +69,31 @@ impl ProductKernel {
             .collect()
     }
 
+    /// One ball's bump and its grown bump over distance, each after the square root of the low-pass: the share of either
+    /// body in a pair. In the unit of volumes; they count as zero `rings` resolutions beyond the grown ball.
+    pub fn half_passed(&self, radius: f64, rings: f64) -> Table<2> {
+        let end = radius + self.options.offset + rings * self.options.resolution;
+        let step = 1.0 / (4.0 * end);
+        let frequencies = (0..).map(|n| f64::from(n) * step);
+        let waves: Vec<(f64, [f64; 2])> = frequencies
+            .take_while(|&w| w < self.w_max)
+            .map(|w| {
+                let measure = 4.0 * PI * w * w * step * self.low_pass(w).sqrt();
+                let spectrum = |body| measure * self.unit.powi(3) * self.spectrum(body, radius, w);
+                (w, LAYERS.map(spectrum))
+            })
+            .collect();
+        Table::fit(end, PANEL_IN_WAVES / self.w_max, |d| {
+            let mut sums = [0.0; 2];
+            for (w, parts) in &waves {
+                let wave = sinc(2.0 * w * d);
+                sums[0] += parts[0] * wave;
+                sums[1] += parts[1] * wave;
+            }
+            sums
+        })
+    }
+
     pub(super) fn low_passed(&self, bands: &[(f64, [f64; 3])], distance: f64) -> [f64; 4] {
         let mut slices = [0.0; 3];
         for (w, band) in bands {
