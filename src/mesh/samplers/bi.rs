@@ -3,7 +3,7 @@
 //! # The double skin
 //!
 //! Balls of any size count by volume when densities are multiplied and integrated (B&I eq. 51-53). Each part has F =
-//! f(S + B0) - lambda f(S), and a pair scores -<F_A, F_B>. The balls are those of A1 up to [`SMALL`] offsets and of A3
+//! f(S + B0) - lambda f(S), and a pair scores -<F_A, F_B>. The balls are those of A1 up to 2 offsets and of A3
 //! above, at mu = 0.25, on a grid of half the offset. Each gives two bumps, of the ball and of the ball grown by the
 //! depth of the skin. Their weights, of either sign, are fitted to F at once ([`super::double_skin`]).
 //!
