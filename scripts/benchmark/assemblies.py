@@ -21,7 +21,7 @@ from dataclasses import dataclass, field
 from pathlib import Path
 
 import numpy as np
-from manifold3d import CrossSection, Manifold
+from manifold3d import CrossSection, JoinType, Manifold
 
 CLEARANCE = 1.5
 
@@ -133,8 +133,6 @@ def cross_peg():
 def jigsaw():
     left = CrossSection.square([25, 34]) + CrossSection.circle(5.5, 48).translate([31, 19])
     left = left + CrossSection.square([4, 6]).translate([24, 16]) - CrossSection.circle(4.5, 48).translate([0, 9])
-    from manifold3d import JoinType
-
     right = CrossSection.square([30, 34]).translate([24, 0]) - left.offset(CLEARANCE, JoinType.Round)
     right = right ^ CrossSection.square([60, 60]).translate([25 + CLEARANCE, -10])
     return Pair("jigsaw", mesh(left.extrude(22)), mesh(right.extrude(22)))
@@ -154,9 +152,7 @@ def ball_and_socket():
 
 def dovetail():
     tail = CrossSection([[[-9, -12], [3, -12], [7, 0], [-13, 0]]])
-    from manifold3d import JoinType
-
-    lower = CrossSection.square([50, 14]).translate([-25, -26 + CLEARANCE * 0]) + tail.translate([0, 0])
+    lower = CrossSection.square([50, 14]).translate([-25, -26]) + tail
     upper = CrossSection.square([50, 24]).translate([-25, -12]) - lower.offset(CLEARANCE, JoinType.Round)
     return Pair("dovetail", mesh(lower.extrude(40)), mesh(upper.extrude(40)))
 
