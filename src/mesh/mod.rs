@@ -17,7 +17,6 @@ pub mod samplers;
 
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::mesh::Solid;
-use knotdock_structures::numeric::Bump;
 use knotdock_structures::sampling::feature_size::feature_size;
 use knotdock_structures::sampling::grid::{DepthField, Grid};
 use knotdock_structures::sampling::weights::FittedWeights;
@@ -294,6 +293,11 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
             error: Error::input(message).help(remedy),
         });
     }
+    let kernel = options.kernel(offset, 1.0);
+    kernel.check().map_err(|error| MeshSceneError {
+        part: None,
+        error: Error::input(error).help("give a number in this range"),
+    })?;
     Ok(MeshPair {
         parts: [
             measured[0].sampled(0, offset, options)?,
@@ -363,8 +367,6 @@ impl<'a> Measured<'a> {
         options: &MeshOptions,
     ) -> Result<SampledPart, MeshSceneError> {
         let kernel = options.kernel(offset, self.unit);
-        Bump::new(kernel.alpha)
-            .map_err(|error| of_part(index, error, "give --alpha a number above zero"))?;
         let kernel = (options.weights == SampleWeights::Fitted).then_some(kernel);
         let found = match (self.shape, &self.field, options.sampler) {
             (Shape::Solid(solid), Some(field), sampler) => {

@@ -112,7 +112,11 @@ impl KernelOptions {
         Ok((reward, largest))
     }
 
-    pub(super) fn check(&self) -> Result<Bump, KernelError> {
+    /// Checks the numbers and gives the bump function.
+    ///
+    /// # Errors
+    /// [`KernelError`] for one out of its range.
+    pub fn check(&self) -> Result<Bump, KernelError> {
         let bump = Bump::new(self.alpha)?;
         let trim = match self.trim {
             Trim::FlatTop => 1.0,

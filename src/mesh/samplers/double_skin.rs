@@ -140,11 +140,7 @@ impl Nodes {
         let nodes = padded.max(per_axis);
         if nodes > MOST_NODES {
             let most = MOST_NODES;
-            return Err(SamplerError::Nodes {
-                resolution,
-                nodes,
-                most,
-            });
+            return Err(SamplerError::Nodes { nodes, most });
         }
         // A node's share of a solid that is deeper than `by` there, from its depth.
         let share = |depth: f64, by: f64| ((depth + by) / h + 0.5).clamp(0.0, 1.0);

@@ -64,12 +64,12 @@ pub(super) enum SamplerError {
     Sample(#[from] SampleError),
     #[error(transparent)]
     Kernel(#[from] KernelError),
-    /// The fit of the double skin needs too many nodes, along an axis.
+    /// The fit of the double skin needs too many nodes.
     #[error(
-        "at a resolution of {resolution:.3e} weights would be fitted on {nodes} nodes an axis; at most {most} are possible"
+        "at this resolution weights would be fitted on {nodes} nodes per axis; at most {most} are possible"
     )]
     Nodes {
-        resolution: f64,
+        /// Along an axis.
         nodes: usize,
         most: usize,
     },
