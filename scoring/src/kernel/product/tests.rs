@@ -121,3 +121,24 @@ fn refuses_what_defines_no_kernel() {
     assert!(ProductKernel::new(options(2.0), Band::Whole, f64::NAN, 1.0).is_err());
     assert!(ProductKernel::new(options(2.0), Band::Whole, 1.9, 0.0).is_err());
 }
+
+/// Two half-passed bumps about one point, multiplied and integrated, are the low-passed kernel of the pair at distance
+/// zero (Parseval): the halves share the low-pass.
+#[test]
+fn half_passed_bumps_multiply_to_the_pair_kernel() {
+    let kernel = kernel(2.0, Band::LowPass);
+    let (r, s) = (1.5, 1.9);
+    let [first, second] = [r, s].map(|radius| kernel.half_passed(radius, 24.0));
+    let (end, count) = (first.end().min(second.end()), 20_000);
+    let step = end / f64::from(count);
+    let mut sums = [0.0; 2];
+    for d in (0..count).map(|i| (f64::from(i) + 0.5) * step) {
+        let (a, b) = (first.value(d), second.value(d));
+        for layer in 0..2 {
+            sums[layer] += 4.0 * PI * d * d * a[layer] * b[layer] * step;
+        }
+    }
+    let [plain, _, grown, _] = kernel.value(0.0, r, s);
+    assert!((sums[0] / plain - 1.0).abs() < 1e-4, "{sums:?} {plain}");
+    assert!((sums[1] / grown - 1.0).abs() < 1e-4, "{sums:?} {grown}");
+}
