@@ -120,7 +120,7 @@ impl<'a> Preparer<'a> {
         Self {
             pair,
             sampled: sampled
-                .map(|sampling| (mesh_options(options), Arc::clone(sampling)))
+                .map(|sampling| (mesh_options(options).of_balls(), Arc::clone(sampling)))
                 .collect(),
         }
     }
@@ -146,11 +146,12 @@ impl<'a> Preparer<'a> {
         options: &DockOptions,
     ) -> Result<Arc<Sampling>, Error> {
         let wanted = mesh_options(options);
-        if let Some((_, known)) = self.sampled.iter().find(|(known, _)| *known == wanted) {
+        let key = wanted.of_balls();
+        if let Some((_, known)) = self.sampled.iter().find(|(known, _)| *known == key) {
             return Ok(Arc::clone(known));
         }
         let sampling = Arc::new(Sampling::of(solids, &wanted)?);
-        self.sampled.push((wanted, Arc::clone(&sampling)));
+        self.sampled.push((key, Arc::clone(&sampling)));
         Ok(sampling)
     }
 }

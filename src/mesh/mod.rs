@@ -79,6 +79,19 @@ pub struct MeshOptions {
 }
 
 impl MeshOptions {
+    /// These options, with the defaults of all that do not change the balls.
+    pub(crate) fn of_balls(self) -> Self {
+        match self.sampler {
+            Sampler::Bi => self,
+            Sampler::Lattice => Self {
+                lambda: 0.0,
+                resolution: None,
+                pass_length: None,
+                ..self
+            },
+        }
+    }
+
     /// The kernel at an offset, its lengths in `unit`.
     fn kernel(&self, offset: f64, unit: f64) -> KernelOptions {
         let resolution = self.resolution.unwrap_or(RESOLUTION * offset);
@@ -424,7 +437,7 @@ impl<'a> Measured<'a> {
             inside_nodes: self.inside,
             feature_size: self.feature_size,
             weights: found.fit,
-            double_skin: found.skin_fit,
+            double_skin: found.double_skin,
         })
     }
 }

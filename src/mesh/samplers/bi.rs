@@ -108,7 +108,7 @@ fn weighted(
             weights,
             per_cell: None,
             fit: None,
-            skin_fit: None,
+            double_skin: None,
         });
     };
     let skin = DoubleSkin {
@@ -128,7 +128,7 @@ fn weighted(
         skin_weights: fitted.skin_weights,
         per_cell: None,
         fit: None,
-        skin_fit: Some(fitted.fit),
+        double_skin: Some(fitted.fit),
     })
 }
 

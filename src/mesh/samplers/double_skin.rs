@@ -76,14 +76,9 @@ impl DoubleSkin<'_> {
             for (weight, given) in weights.iter_mut().zip(given) {
                 weight[0] = *given;
             }
+            let alone: Vec<[f32; 2]> = given.iter().map(|&weight| [weight as f32, 0.0]).collect();
             let mut sum = vec![0.0; target.len()];
-            columns.sum(
-                &given
-                    .iter()
-                    .map(|&weight| [weight as f32, 0.0])
-                    .collect::<Vec<_>>(),
-                &mut sum,
-            );
+            columns.sum(&alone, &mut sum);
             for (target, sum) in target.iter_mut().zip(sum) {
                 *target -= sum;
             }

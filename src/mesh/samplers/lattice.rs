@@ -45,6 +45,6 @@ pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, Samp
         skin_weights: Vec::new(),
         per_cell: Some(per_cell),
         fit,
-        skin_fit: None,
+        double_skin: None,
     })
 }

@@ -144,7 +144,7 @@ pub(super) struct WeightedBalls {
     /// The fit of the weights, if they were fitted.
     pub fit: Option<FittedWeights>,
     /// The fit of the double skin.
-    pub skin_fit: Option<DoubleSkinFit>,
+    pub double_skin: Option<DoubleSkinFit>,
 }
 
 #[cfg(test)]
