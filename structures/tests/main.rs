@@ -3,6 +3,7 @@
 
 mod assemblies;
 mod ball_solids;
+mod contact;
 mod damaged_files;
 mod facing;
 mod hard_meshes;

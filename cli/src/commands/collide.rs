@@ -30,7 +30,8 @@ use knotdock_structures::mesh::Figure;
 ///
 /// A solid is a mesh (.stl, .obj, .ply, .off), a molecule (.pdb, .ent, .cif) or a file of balls (.csv, cuRobo .yml,
 /// foam .json). Balls inside both that meet certify a hit, containment included. Balls that hold both and do not meet
-/// certify that the pose is free. Between the two it is undecided, and a finer --grid says more.
+/// certify that the pose is free. Between the two the triangles of closed meshes decide. With other solids the pose is
+/// undecided, and a finer --grid says more.
 #[derive(Args, Debug)]
 pub struct Collide {
     /// The fixed solid; robot.yml:hand picks a link, FILE:H,L chains.
@@ -79,13 +80,15 @@ pub struct Collide {
 /// Names of [`Method`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
 enum MethodName {
-    /// Trees, and modes for forces where they cost less.
+    /// Balls, then triangles if balls leave a pose open; modes for forces where they cost less.
     Auto,
-    /// Trees alone.
+    /// Triangles, of closed meshes that do not cross themselves.
+    Exact,
+    /// Balls alone.
     Tree,
     /// Modes alone, which certify hits and never that a pose is free.
     Modes,
-    /// Trees cull, and pairs or modes are summed, whichever cost less.
+    /// As auto; pairs or modes are summed for forces, whichever cost less at the pose.
     Hybrid,
 }
 
@@ -93,6 +96,7 @@ impl From<MethodName> for Method {
     fn from(name: MethodName) -> Self {
         match name {
             MethodName::Auto => Self::Auto,
+            MethodName::Exact => Self::Exact,
             MethodName::Tree => Self::Tree,
             MethodName::Modes => Self::Modes,
             MethodName::Hybrid => Self::Hybrid,
@@ -148,7 +152,7 @@ impl Collide {
             reports: collision.at_each(&poses)?,
             seconds: start.elapsed().as_secs_f64(),
             impact: self.path.as_ref().map(|_| collision.first_impact(&poses)),
-            band: collision.band(),
+            band: collision.undecided_band(),
             solids,
             poses,
         };
@@ -211,7 +215,7 @@ struct Results {
     reports: Vec<CollisionReport>,
     seconds: f64,
     impact: Option<Impact>,
-    /// Width of the gaps that the balls leave undecided.
+    /// Largest gap that may stay undecided.
     band: f64,
 }
 
@@ -219,6 +223,14 @@ impl Results {
     fn count(&self, verdict: Verdict) -> usize {
         let reports = self.reports.iter();
         reports.filter(|report| report.verdict == verdict).count()
+    }
+
+    /// The poses that may be undecided.
+    fn undecided(&self) -> String {
+        match self.band > 0.0 {
+            true => format!("gaps below {}", Figure(self.band)),
+            false => "contact within rounding".to_owned(),
+        }
     }
 
     fn page(&self, viewer: Option<&Viewer>) -> Result<String, Error> {
@@ -237,12 +249,12 @@ impl Results {
             sentences: vec![
                 format!("{a} (A) stands and {b} (B) moves."),
                 format!(
-                    "Of {}: hit {}, free {}, undecided {} (gaps below {}).",
+                    "Of {}: hit {}, free {}, undecided {} ({}).",
                     counted(self.reports.len(), "pose"),
                     self.count(Verdict::Hit),
                     self.count(Verdict::Free),
                     self.count(Verdict::Undecided),
-                    Figure(self.band),
+                    self.undecided(),
                 ),
             ],
             names: ["A", "B"],
@@ -269,13 +281,13 @@ impl Results {
         times.sort_by(f64::total_cmp);
         let at = |share: f64| times[((times.len() - 1) as f64 * share) as usize];
         format!(
-            "{} poses: {} hit, {} free, {} undecided (gaps below {}); {:.0} poses a second; microseconds a pose: median \
+            "{} poses: {} hit, {} free, {} undecided ({}); {:.0} poses a second; microseconds a pose: median \
              {:.1}, 99% {:.1}, worst {:.1}",
             self.reports.len(),
             self.count(Verdict::Hit),
             self.count(Verdict::Free),
             self.count(Verdict::Undecided),
-            Figure(self.band),
+            self.undecided(),
             self.reports.len() as f64 / self.seconds,
             at(0.5),
             at(0.99),

@@ -117,6 +117,10 @@ impl SolidInput {
             solid.inner().len(),
             Figure(solid.epsilon())
         );
+        if let Some(reason) = sampling.indefinite {
+            file.description +=
+                &format!("\n  {reason}, so balls alone decide and poses may stay undecided");
+        }
         Ok(Self {
             file,
             kind: "mesh",
@@ -157,6 +161,7 @@ impl SolidInput {
             "balls": self.solid.inner().len(),
             "epsilon": self.solid.epsilon(),
             "grid_per_axis": self.sampling.map(|sampling| sampling.per_axis),
+            "triangles_decide": self.solid.exact().is_some(),
             "volume_missed_by_balls": self.sampling.and_then(|sampling| sampling.missed),
             "warnings": self.file.warnings,
         })

@@ -1,4 +1,11 @@
-//! Force and torque of the overlap energy of two solids, by pairs of balls or by Fourier modes (B&I, eq. 50).
+//! Force and torque of the overlap energy of two solids.
+//!
+//! # Meshes whose triangles decide
+//!
+//! The energy is the volume that the solids share, exact but for rounding, and so are its slopes
+//! ([`knotdock_structures::mesh::SharedRegion`]).
+//!
+//! # Other solids: pairs of balls or Fourier modes (B&I, eq. 50)
 //!
 //! The energy is the integral of the product of both bodies' densities, sums of bumps that are about one inside
 //! ([`BallSolid::density`]). It is about the shared volume, smooth, and zero unless inner balls meet. Force and torque
@@ -20,14 +27,17 @@ use super::{Certificate, Collision, CollisionQuery, has_come};
 /// How verdicts and forces are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Verdicts by trees; forces as for [`Self::Hybrid`] if the bodies have enough balls for modes to cost less.
+    /// Verdicts by balls, and by triangles where balls leave them open; forces as for [`Self::Hybrid`] if the bodies have
+    /// enough balls for modes to cost less.
     #[default]
     Auto,
-    /// Verdicts by trees, forces by all pairs of balls that meet.
+    /// Verdicts by triangles if they decide, forces as for [`Self::Auto`].
+    Exact,
+    /// Verdicts by balls, forces by all pairs of balls that meet.
     Tree,
     /// Verdicts and forces by modes alone, which never certify that a pose is free.
     Modes,
-    /// Verdicts by trees, forces by pairs or by modes, whichever cost less at the pose.
+    /// As [`Self::Auto`], with forces by pairs or by modes, whichever cost less at the pose.
     Hybrid,
 }
 
@@ -41,7 +51,8 @@ pub struct Contact {
     pub force: [f64; 3],
     /// Minus its slope by B's rotation about its centre of mass, in A's frame.
     pub torque: [f64; 3],
-    /// How far the energy may be from that of all pairs of balls: by modes left out, and by rounding.
+    /// How far the energy may be from the shared volume of meshes, or from the sum over all pairs of balls: by modes left
+    /// out, and by rounding.
     pub bound: f64,
     /// Pairs of balls that were summed.
     pub ball_pairs: usize,
@@ -83,8 +94,12 @@ impl Densities {
             Method::Tree => None,
             Method::Modes | Method::Hybrid => Some(prepared()?),
             // Forces are those of the solids themselves: with a margin the modes are of grown ones.
-            Method::Auto if collision.margin > 0.0 || all_pairs < WORTH_MODES => None,
-            Method::Auto => Some(prepared()?).filter(|modes| modes.nanoseconds() < all_pairs),
+            Method::Auto | Method::Exact if collision.margin > 0.0 || all_pairs < WORTH_MODES => {
+                None
+            }
+            Method::Auto | Method::Exact => {
+                Some(prepared()?).filter(|modes| modes.nanoseconds() < all_pairs)
+            }
         };
         Ok(Self {
             trees: [first, second],
@@ -96,12 +111,25 @@ impl Densities {
 }
 
 impl CollisionQuery<'_> {
-    /// Overlap energy, force and torque, by pairs of balls or by modes if these cost less; `None` if
-    /// [`Collision::prepare`] made no densities.
+    /// Energy, force and torque: of the shared volume if the triangles of meshes decide, else of the bumps, by pairs or by
+    /// modes if these cost less. `None` if there are no densities, which [`Collision::prepare`] reports.
     pub fn contact(&mut self) -> Option<Contact> {
         let collision = self.collision;
-        let densities = collision.densities.get()?;
         let about = self.motion.apply(collision.solids[1].centroid());
+        if let Some(region) = self.region() {
+            let force = Vector3::from(region.by_shift).scale(-1.0);
+            let torque = Vector3::from(about).cross(&Vector3::from(region.by_shift))
+                - Vector3::from(region.by_turn);
+            return Some(Contact {
+                energy: region.volume,
+                force: force.into(),
+                torque: torque.into(),
+                bound: region.bound,
+                ball_pairs: 0,
+                modes: 0,
+            });
+        }
+        let densities = collision.densities().ok()?;
         let mut sum = Accumulator::new(&densities.kernel, about);
         let takes_pairs = collision.method != Method::Modes;
         // With a margin the modes are of grown solids, and no substitute for pairs.

@@ -8,7 +8,7 @@
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::Limits;
 
-use super::{Collision, CollisionQuery, Verdict, Workspace};
+use super::{Collision, CollisionQuery, Gap, Verdict, Workspace};
 use crate::geometry::motion::{angle, interpolated};
 
 /// Maximum number of steps of one geodesic.
@@ -42,7 +42,7 @@ impl Collision<'_> {
             free_until: time,
             hit_by: self.hit_after(path, time, tolerance, work),
             pose: Some(pose),
-            verdict: self.timeless(&pose, work).certificate_by_trees().verdict(),
+            verdict: self.timeless(&pose, work).certificate_by_search().verdict(),
             steps,
         };
         for (number, ends) in path.windows(2).enumerate() {
@@ -90,11 +90,16 @@ impl Collision<'_> {
             let to = path.get(number + 1).unwrap_or(from);
             let speed = self.top_speed(from, to);
             for _ in 0..STEPS {
-                // Inner balls are as much farther apart as the outer ones are larger.
-                let gap = self.gap(&interpolated(from, to, share), work) + self.band();
-                if gap < 0.0 {
+                let pose = interpolated(from, to, share);
+                let certificate = self.timeless(&pose, work).certificate_by_search();
+                if certificate.verdict() == Verdict::Hit {
                     return Some(number as f64 + share);
                 }
+                let gap = match self.exact() {
+                    Some(_) => self.gap(&pose, work),
+                    // Inner balls are as much farther apart as the outer ones are larger.
+                    None => self.gap(&pose, work) + self.band(),
+                };
                 if share >= 1.0 {
                     break;
                 }
@@ -116,8 +121,19 @@ impl Collision<'_> {
             // Inner balls that meet end the path, however deep they are.
             enough_below: self.margin,
         };
-        let closest = self.timeless(pose, work).closest(&limits);
-        closest.distance - self.band() - self.margin
+        let mut query = self.timeless(pose, work);
+        let closest = query.closest(&limits);
+        let low = closest.distance - self.band();
+        // Far from contact balls are near enough to the truth.
+        let exact = self.exact().filter(|_| low < self.margin + self.band());
+        let gap = match exact {
+            Some(solids) if closest.distance > 0.0 => match query.gap(solids, closest.distance) {
+                Gap::Apart(found) => found.low.max(low),
+                Gap::None | Gap::Open => low.min(0.0),
+            },
+            _ => low,
+        };
+        gap - self.margin
     }
 
     /// A query without a deadline.

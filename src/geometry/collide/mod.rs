@@ -19,7 +19,10 @@
 //! - the least over pairs of outer balls is never above it while they are apart. If they meet, a translation that
 //!   parts them parts the solids too.
 //!
-//! Between the two the pose is undecided, and the gap of the solids is known to `eps_A` + `eps_B`.
+//! Between the two the triangles of the meshes decide, if both are closed and do not cross themselves
+//! ([`knotdock_structures::mesh::ExactSolid`]): surfaces that cross certify a hit, and so does a part of one within the other.
+//! Other solids stay undecided there, and their gap is known to `eps_A` + `eps_B`. What rounding can change is
+//! undecided too.
 
 mod contact;
 mod impact;
@@ -35,6 +38,9 @@ use knotdock_structures::Error;
 use knotdock_structures::ball_solid::{
     BallHierarchy, BallSolid, Closest, ClosestSearch, Limits, MeetingPairs, Motion,
 };
+use knotdock_structures::mesh::{
+    ClosestPoints, ExactSolid, MeshContact, SharedRegion, SharedRegions, SurfacePairs,
+};
 use rayon::prelude::*;
 
 use contact::Densities;
@@ -44,6 +50,8 @@ pub use shared_volume::SharedVolume;
 
 /// Pairs of balls between two looks at the clock.
 const PAIRS_PER_CLOCK_CHECK: usize = 256;
+/// Pairs of balls that are compared before triangles are.
+const BALLS_FIRST: usize = 256;
 /// Poses that one thread takes at a time.
 const POSES_PER_TASK: usize = 64;
 /// Default of [`Collision::max_modes`].
@@ -56,7 +64,7 @@ pub enum Verdict {
     Hit,
     /// They do not.
     Free,
-    /// The balls leave it open.
+    /// Balls or rounding leave it open.
     Undecided,
 }
 
@@ -78,8 +86,14 @@ pub enum Certificate {
     InnerBalls,
     /// Free: no pair of outer balls is closer than the margin.
     OuterBalls,
+    /// A hit: triangles cross or are closer than the margin, or one mesh holds a part of the other.
+    MeshesMeet,
+    /// Free: no triangles are closer than the margin, and neither mesh holds a part of the other.
+    MeshesApart,
     /// A hit: the summed bumps overlap by more than rounding and the omitted modes can make.
     Modes,
+    /// None: the solids touch to within rounding.
+    Rounding,
     /// None: the verdict is undecided.
     None,
     /// None: the deadline came first.
@@ -90,9 +104,9 @@ impl Certificate {
     /// The verdict that it certifies.
     pub fn verdict(self) -> Verdict {
         match self {
-            Self::InnerBalls | Self::Modes => Verdict::Hit,
-            Self::OuterBalls => Verdict::Free,
-            Self::None | Self::Deadline => Verdict::Undecided,
+            Self::InnerBalls | Self::MeshesMeet | Self::Modes => Verdict::Hit,
+            Self::OuterBalls | Self::MeshesApart => Verdict::Free,
+            Self::None | Self::Rounding | Self::Deadline => Verdict::Undecided,
         }
     }
 
@@ -101,8 +115,10 @@ impl Certificate {
         match self {
             Self::InnerBalls => "inner_balls",
             Self::OuterBalls => "outer_balls",
+            Self::MeshesMeet | Self::MeshesApart => "triangles",
             Self::Modes => "modes",
             Self::None => "none",
+            Self::Rounding => "rounding",
             Self::Deadline => "deadline",
         }
     }
@@ -116,7 +132,8 @@ pub struct DistanceBounds {
     pub low: f64,
     /// Upper bound.
     pub high: f64,
-    /// Points on the closest pair of inner balls, of A and of B, in A's frame: the ends of the gap, or of the depth.
+    /// Points of A and of B in A's frame. Of solids that do not meet they are the closest points of triangles if these
+    /// decide, else of inner balls; of solids that meet the ends of the deepest pair of inner balls.
     pub witnesses: [[f64; 3]; 2],
 }
 
@@ -251,6 +268,11 @@ impl<'a> Collision<'a> {
         self.solids[0].epsilon() + self.solids[1].epsilon()
     }
 
+    /// Largest gap at which a pose may stay undecided: the band, or zero if triangles decide all but rounding.
+    pub fn undecided_band(&self) -> f64 {
+        self.exact().map_or(self.band(), |_| 0.0)
+    }
+
     /// Results for one pose.
     ///
     /// # Errors
@@ -274,7 +296,7 @@ impl<'a> Collision<'a> {
         Ok(reports.flatten_iter().collect())
     }
 
-    /// Checks the margin, and makes the densities that the requested quantities need.
+    /// Checks the margin, and makes the densities if the requested quantities need them.
     ///
     /// # Errors
     /// As [`Self::at`].
@@ -283,11 +305,19 @@ impl<'a> Collision<'a> {
             return Err(Error::input(format!("the margin is {}", self.margin))
                 .help("give a finite margin, 0 or above"));
         }
-        if (self.force || self.method == Method::Modes) && self.densities.get().is_none() {
-            let densities = Densities::new(self)?;
-            self.densities.get_or_init(|| densities);
+        if self.method == Method::Modes || (self.force && self.exact().is_none()) {
+            self.densities()?;
         }
         Ok(())
+    }
+
+    /// The densities, made at first use.
+    fn densities(&self) -> Result<&Densities, Error> {
+        if let Some(densities) = self.densities.get() {
+            return Ok(densities);
+        }
+        let densities = Densities::new(self)?;
+        Ok(self.densities.get_or_init(|| densities))
     }
 
     /// Computation of single quantities at a pose, with the buffers of the caller. Forces, and verdicts by modes, need
@@ -299,10 +329,19 @@ impl<'a> Collision<'a> {
             motion: self.motion(pose),
             start,
             end: self.deadline.and_then(|time| start.checked_add(time)),
+            region: None,
             ball_pairs: 0,
             modes: 0,
             work,
         }
+    }
+
+    /// The meshes whose triangles decide contact, if both do and the method takes them.
+    fn exact(&self) -> Option<[&'a ExactSolid; 2]> {
+        let [a, b] = self.solids.map(BallSolid::exact);
+        let takes = !matches!(self.method, Method::Tree | Method::Modes);
+        takes.then_some(())?;
+        Some([a?, b?])
     }
 
     fn trees(&self) -> [&'a BallHierarchy; 2] {
@@ -325,6 +364,8 @@ impl<'a> Collision<'a> {
 #[derive(Default)]
 pub struct Workspace {
     search: ClosestSearch,
+    surfaces: SurfacePairs,
+    regions: SharedRegions,
     pairs: MeetingPairs,
     marks: [Vec<bool>; 2],
     modes: Option<ModesWorkspace>,
@@ -336,6 +377,8 @@ pub struct CollisionQuery<'q> {
     motion: Motion,
     start: Instant,
     end: Option<Instant>,
+    /// The region that meshes share, once it is known.
+    region: Option<SharedRegion>,
     ball_pairs: usize,
     modes: usize,
     work: &'q mut Workspace,
@@ -347,7 +390,13 @@ impl CollisionQuery<'_> {
         let certificate = self.certificate();
         let contact = self.collision.force.then(|| self.contact()).flatten();
         let distance = self.collision.distance.then(|| self.distance());
-        let shared_volume = self.collision.shared_volume.then(|| self.shared_volume());
+        let shared_volume = self
+            .collision
+            .shared_volume
+            .then(|| match certificate.verdict() {
+                Verdict::Free => SharedVolume::default(),
+                _ => self.shared_volume(),
+            });
         CollisionReport {
             verdict: certificate.verdict(),
             certificate,
@@ -364,57 +413,147 @@ impl CollisionQuery<'_> {
     pub fn certificate(&mut self) -> Certificate {
         match self.collision.method {
             Method::Modes => self.certificate_by_modes(),
-            _ => self.certificate_by_trees(),
+            _ => self.certificate_by_search(),
         }
     }
 
-    fn certificate_by_trees(&mut self) -> Certificate {
-        let margin = self.collision.margin;
-        let limits = Limits {
-            ignored_from: margin + self.collision.band(),
-            enough_below: margin,
+    /// The certificate by balls and by triangles.
+    fn certificate_by_search(&mut self) -> Certificate {
+        let exact = self.collision.exact();
+        let first = match (exact, self.collision.method) {
+            (None, _) => usize::MAX,
+            (Some(_), Method::Exact) => 0,
+            (Some(_), _) => BALLS_FIRST,
         };
-        let closest = self.closest(&limits);
-        if closest.distance < margin {
+        let (margin, rounding) = (self.collision.margin, self.rounding());
+        let limits = Limits {
+            ignored_from: margin + self.collision.band() + rounding,
+            enough_below: margin - rounding,
+        };
+        let trees = self.collision.trees();
+        self.work.search.begin(trees, &self.motion, &limits);
+        let mut certificate = self.certificate_by_balls(&limits, first);
+        if let (Some(solids), Certificate::None) = (exact, certificate) {
+            certificate = match self.meshes(solids, margin) {
+                MeshContact::Met => Certificate::MeshesMeet,
+                MeshContact::Apart => Certificate::MeshesApart,
+                // Solids whose faces are flush may be deep in each other.
+                MeshContact::Open => match self.certificate_by_balls(&limits, usize::MAX) {
+                    Certificate::None => Certificate::Rounding,
+                    certificate => certificate,
+                },
+            };
+        }
+        self.ball_pairs += self.work.search.ball_pairs();
+        certificate
+    }
+
+    /// The certificate by at most so many more pairs of balls.
+    fn certificate_by_balls(&mut self, limits: &Limits, most: usize) -> Certificate {
+        let closest = self.advanced(limits, most);
+        if closest.distance < limits.enough_below {
             Certificate::InnerBalls
         } else if closest.lower >= limits.ignored_from {
             Certificate::OuterBalls
-        } else if closest.finished {
-            Certificate::None
-        } else {
+        } else if has_come(self.end) {
             Certificate::Deadline
+        } else if self.collision.band() == 0.0 && closest.finished {
+            Certificate::Rounding
+        } else {
+            Certificate::None
         }
+    }
+
+    /// How two meshes are to each other, as far as the deadline allows.
+    fn meshes(&mut self, solids: [&ExactSolid; 2], margin: f64) -> MeshContact {
+        let (lengths, end) = ([margin, self.rounding()], self.end);
+        let surfaces = &mut self.work.surfaces;
+        surfaces.contact(solids, &self.motion, lengths, || has_come(end))
     }
 
     /// Bounds of the signed distance.
     pub fn distance(&mut self) -> DistanceBounds {
         let closest = self.closest(&Limits::NONE);
-        let mut low = closest.lower - self.collision.band();
-        if low < 0.0 {
-            low = -self.separation(&closest);
-        }
-        DistanceBounds {
-            low,
+        let mut bounds = DistanceBounds {
+            low: closest.lower - self.collision.band(),
             high: closest.distance,
             witnesses: self.witnesses(closest.pair.unwrap_or([0, 0])),
+        };
+        // With a deadline triangles decide the verdict alone.
+        let exact = self.collision.exact().filter(|_| self.end.is_none());
+        if let Some(solids) = exact.filter(|_| bounds.high > 0.0) {
+            match self.gap(solids, bounds.high) {
+                Gap::Apart(found) => {
+                    bounds.low = bounds.low.max(found.low);
+                    bounds.high = bounds.high.min(found.high);
+                    bounds.witnesses = found.points;
+                }
+                Gap::None => bounds.high = 0.0,
+                Gap::Open => {}
+            }
+        }
+        if bounds.low < 0.0 {
+            bounds.low = -self.separation(&closest);
+        }
+        bounds
+    }
+
+    /// The gap between two meshes, which is no larger than `most`.
+    fn gap(&mut self, solids: [&ExactSolid; 2], most: f64) -> Gap {
+        match self.meshes(solids, 0.0) {
+            MeshContact::Met => Gap::None,
+            MeshContact::Open => Gap::Open,
+            MeshContact::Apart => {
+                let lengths = [most, self.rounding()];
+                let found = self.work.surfaces.closest(solids, &self.motion, lengths);
+                found.map_or(Gap::Open, Gap::Apart)
+            }
         }
     }
 
     /// The closest pair of inner balls within limits, as far as the deadline allows.
     fn closest(&mut self, limits: &Limits) -> Closest {
+        let trees = self.collision.trees();
+        self.work.search.begin(trees, &self.motion, limits);
+        let closest = self.advanced(limits, usize::MAX);
+        self.ball_pairs += closest.ball_pairs;
+        closest
+    }
+
+    /// Goes on with the search for at most so many pairs of balls, as far as the deadline allows.
+    fn advanced(&mut self, limits: &Limits, most: usize) -> Closest {
         let (trees, motion) = (self.collision.trees(), &self.motion);
-        let pairs = match self.end {
-            Some(_) => PAIRS_PER_CLOCK_CHECK,
-            None => usize::MAX,
+        let search = &mut self.work.search;
+        let stop_at = search.ball_pairs().saturating_add(most);
+        let step = match self.end {
+            Some(_) => most.min(PAIRS_PER_CLOCK_CHECK),
+            None => most,
         };
-        self.work.search.begin(trees, motion, limits);
         loop {
-            let closest = self.work.search.advance(trees, motion, limits, pairs);
-            if closest.finished || has_come(self.end) {
-                self.ball_pairs += closest.ball_pairs;
+            let closest = search.advance(trees, motion, limits, step);
+            if closest.finished || closest.ball_pairs >= stop_at || has_come(self.end) {
                 return closest;
             }
         }
+    }
+
+    /// The region that two meshes share, if their triangles decide.
+    fn region(&mut self) -> Option<SharedRegion> {
+        if self.region.is_none() {
+            let solids = self.collision.exact()?;
+            let rounding = self.rounding();
+            self.region = self.work.regions.at(solids, &self.motion, rounding);
+        }
+        self.region
+    }
+
+    /// How far the rounding of a pose and of coordinates moves a point of B in A's frame.
+    fn rounding(&self) -> f64 {
+        let solids = self.collision.solids;
+        let places = solids.map(BallSolid::origin);
+        let places = places.iter().chain([&self.motion.shift]).flatten();
+        let reach: f64 = solids.iter().map(|solid| solid.reach()).sum();
+        8.0 * f64::EPSILON * (reach + places.map(|part| part.abs()).sum::<f64>())
     }
 
     /// Points of two balls on the line of their centres, in A's file frame.
@@ -429,6 +568,15 @@ impl CollisionQuery<'_> {
         };
         [on(a.center, a.radius), on(center, -b.radius)]
     }
+}
+
+/// The gap between two meshes.
+enum Gap {
+    /// They meet.
+    None,
+    /// Rounding leaves open whether they do.
+    Open,
+    Apart(ClosestPoints),
 }
 
 /// Whether a deadline has come.

@@ -1,4 +1,5 @@
-//! The volume that two solids share at a pose, between that of their inner and that of their outer balls.
+//! The volume that two solids share at a pose: of meshes whose triangles decide exact but for rounding
+//! ([`knotdock_structures::mesh::SharedRegion`]), of others between that of their inner and that of their outer balls.
 //!
 //! A point of both solids is in a ball of either, and these two meet. So only balls that meet one of the other body's
 //! count. The volume that their unions share is exact but for rounding ([`ball_union::shared_volume`]).
@@ -39,6 +40,12 @@ impl CollisionQuery<'_> {
     pub fn shared_volume(&mut self) -> SharedVolume {
         if self.end.is_some() {
             return self.volume_by_pairs();
+        }
+        if let Some(region) = self.region() {
+            return SharedVolume {
+                value: region.volume,
+                bound: region.bound,
+            };
         }
         let band = self.collision.band();
         let inner = self.shared(0.0);
@@ -110,15 +117,6 @@ impl CollisionQuery<'_> {
         let spheres = [&first, &second].map(|balls| balls.iter().map(sphere).sum::<f64>());
         volume.error += self.rounding() * spheres[0].min(spheres[1]);
         volume
-    }
-
-    /// How far the rounding of a pose and of coordinates moves a ball of B in A's frame.
-    fn rounding(&self) -> f64 {
-        let solids = self.collision.solids;
-        let places = solids.map(BallSolid::origin);
-        let places = places.iter().chain([&self.motion.shift]).flatten();
-        let reach: f64 = solids.iter().map(|solid| solid.reach()).sum();
-        4.0 * f64::EPSILON * (reach + places.map(|part| part.abs()).sum::<f64>())
     }
 }
 

@@ -108,6 +108,11 @@ impl ClosestSearch {
         self.state(limits)
     }
 
+    /// Pairs of balls compared since the search began.
+    pub fn ball_pairs(&self) -> usize {
+        self.ball_pairs
+    }
+
     /// The closest pair, from beginning to end.
     pub fn find(
         &mut self,

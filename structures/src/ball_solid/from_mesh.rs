@@ -1,9 +1,11 @@
 //! The solid of a mesh as balls, by Algorithm 1.
 
+use std::sync::Arc;
+
 use super::{BallHierarchy, BallSolid, density, mean_center};
 use crate::Error;
 use crate::ball::Ball;
-use crate::mesh::Solid;
+use crate::mesh::{ExactSolid, Indefinite, Solid};
 use crate::numeric::Bump;
 use crate::sampling::decomposition::{DecompositionOptions, reduce};
 use crate::sampling::hausdorff::HausdorffMeter;
@@ -23,6 +25,8 @@ pub struct MeshSampling {
     pub inward: f64,
     /// Share of the solid's volume that the inner balls miss; `None` if the grid sees no volume.
     pub missed: Option<f64>,
+    /// Why the triangles do not decide contact, if they do not.
+    pub indefinite: Option<Indefinite>,
 }
 
 impl BallSolid {
@@ -68,7 +72,10 @@ impl BallSolid {
             mean_center(&few, &weights)
         };
         let density = density(&few, &weights).map_err(|_| SampleError::NothingInside)?;
+        let exact = ExactSolid::new(solid);
+        let indefinite = exact.as_ref().err().copied();
         let solid = Self {
+            exact: exact.ok().map(Arc::new),
             origin,
             hierarchy: BallHierarchy::new(&scaled(&balls)),
             epsilon: epsilon * unit,
@@ -80,6 +87,7 @@ impl BallSolid {
             grid_epsilon: grid_epsilon * unit,
             inward: inward * unit,
             missed: (volume > 0.0).then(|| fit.volume_missed / volume),
+            indefinite,
         };
         Ok((solid, sampled))
     }

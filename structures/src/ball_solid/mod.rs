@@ -36,8 +36,11 @@ pub use meeting::MeetingPairs;
 
 pub use crate::motion::Motion;
 
+use std::sync::Arc;
+
 use crate::ball::Ball;
 use crate::knots::{Knots, KnotsError};
+use crate::mesh::ExactSolid;
 use crate::vector::{add, norm, scale, subtract};
 
 /// A solid between two sets of balls.
@@ -53,6 +56,8 @@ pub struct BallSolid {
     centroid: [f64; 3],
     /// Balls and weights whose summed bumps are about one inside the solid; relative to `origin`.
     density: Knots,
+    /// Its surface, if the triangles of a mesh decide contact.
+    exact: Option<Arc<ExactSolid>>,
 }
 
 impl BallSolid {
@@ -74,6 +79,7 @@ impl BallSolid {
             epsilon: 0.0,
             centroid,
             density: density(&moved, weights)?,
+            exact: None,
         })
     }
 
@@ -112,6 +118,11 @@ impl BallSolid {
     /// to [`Self::origin`]. Each is an inner ball, so solids whose bumps overlap meet.
     pub fn density(&self) -> &Knots {
         &self.density
+    }
+
+    /// The solid's surface, if the solid is a mesh whose triangles decide contact.
+    pub fn exact(&self) -> Option<&ExactSolid> {
+        self.exact.as_deref()
     }
 
     /// Radius of a ball about the origin of the stored coordinates that holds the outer balls.

@@ -17,11 +17,13 @@
 //!
 //! `repair` welds vertices (`weld`, with `rounding`), cuts polygons into triangles, drops a whole surface that is there
 //! twice and finds open and non-manifold edges and parts (`edges`, `topology`). `facing` turns surfaces outward by their
-//! volume and nesting.
+//! volume and nesting. [`SurfacePairs`] compares the surfaces of two solids at a pose.
 
+mod contact;
 mod read;
 mod repair;
 mod report;
+mod shared_region;
 mod slivers;
 mod solid;
 mod surface;
@@ -29,8 +31,10 @@ mod triangle_mesh;
 mod triangle_tree;
 pub(crate) mod winding;
 
+pub use self::contact::{ClosestPoints, ExactSolid, Indefinite, MeshContact, SurfacePairs};
 pub use self::read::{MeshFormat, file_bytes, from_triangles, parse, read, read_bytes};
 pub use self::report::{Figure, MeshReport};
+pub use self::shared_region::{SharedRegion, SharedRegions};
 pub use self::solid::{Frame, Solid};
 pub use self::surface::SurfaceSample;
 pub(crate) use self::surface::{Probe, is_beside, surface_pieces};

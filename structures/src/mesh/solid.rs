@@ -49,6 +49,7 @@ impl Frame {
 }
 
 /// A solid for queries at points. All coordinates and lengths are those of its [`Frame`].
+#[derive(Clone, Debug)]
 pub struct Solid {
     frame: Frame,
     mesh: Mesh,
@@ -135,6 +136,50 @@ impl Solid {
     /// The triangles as clusters, for sums over the surface.
     pub(crate) fn tree(&self) -> &TriangleTree {
         &self.tree
+    }
+
+    /// The triangles that have an area with their numbers, in the order of [`Self::boxes`].
+    pub(super) fn triangles(&self) -> &[(usize, [[f64; 3]; 3])] {
+        &self.triangles
+    }
+
+    /// A tree of the bounding boxes of [`Self::triangles`].
+    pub(super) fn boxes(&self) -> &[BoxNode<([f64; 3], [f64; 3])>] {
+        &self.boxes
+    }
+
+    /// Corners of the triangles that have an area, as indices of the mesh's positions.
+    pub(super) fn corners(&self) -> Vec<[u32; 3]> {
+        let all = self.mesh.triangles.iter().copied();
+        all.filter(|&triangle| !self.mesh.is_sliver(triangle))
+            .collect()
+    }
+
+    /// Calls `found` with the triangles that have an area, numbered, of leaves whose boxes `enter` accepts, as it does
+    /// the boxes above them.
+    pub(super) fn visit(
+        &self,
+        enter: impl Fn(&([f64; 3], [f64; 3])) -> bool,
+        mut found: impl FnMut(&(usize, [[f64; 3]; 3])),
+    ) {
+        let mut at = 0;
+        let mut later = Vec::new();
+        loop {
+            let node = &self.boxes[at];
+            if enter(&node.known) {
+                if node.second != 0 {
+                    later.push(node.second);
+                    at += 1;
+                    continue;
+                }
+                let own = &self.triangles[node.first..node.first + node.count];
+                own.iter().for_each(&mut found);
+            }
+            match later.pop() {
+                Some(next) => at = next,
+                None => return,
+            }
+        }
     }
 
     /// Whether a point is inside: its generalised winding number is above one half.
@@ -225,7 +270,7 @@ impl Solid {
 
 /// The point of a triangle that is nearest to another point: a corner, a point of a side or one within. The region that
 /// the other point is in decides (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
-fn nearest_on([a, b, c]: [[f64; 3]; 3], point: [f64; 3]) -> [f64; 3] {
+pub(super) fn nearest_on([a, b, c]: [[f64; 3]; 3], point: [f64; 3]) -> [f64; 3] {
     let [ab, ac, bc] = [subtract(b, a), subtract(c, a), subtract(c, b)];
     let [from_a, from_b, from_c] = [a, b, c].map(|corner| subtract(point, corner));
     let (ab_a, ac_a) = (dot(ab, from_a), dot(ac, from_a));

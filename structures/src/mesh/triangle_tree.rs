@@ -6,14 +6,14 @@ use crate::vector::{add, bounds, distance, norm, scale};
 const LEAF: usize = 8;
 
 /// A binary tree over triangles that have an area; halves at the median of the longest side.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct TriangleTree {
     /// Corners, in the order of the leaves.
     triangles: Vec<[[f64; 3]; 3]>,
     nodes: Vec<Cluster>,
 }
 
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct Cluster {
     /// Area-weighted middle.
     pub center: [f64; 3],

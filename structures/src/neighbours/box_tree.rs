@@ -6,7 +6,7 @@ use crate::vector::bounds;
 pub(crate) const LEAF: usize = 8;
 
 /// Some of the things: the box of their places, and a value computed from all of them.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct BoxNode<K, const N: usize = 3> {
     pub low: [f64; N],
     pub high: [f64; N],
