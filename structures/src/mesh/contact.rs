@@ -12,10 +12,9 @@
 //! and the arithmetic can make it. So triangles are apart or cross for certain, or the answer is open: faces that are
 //! flush, or an edge that grazes another.
 
-use crate::mesh::repair::edges::Sets;
 use crate::mesh::solid::{Solid, nearest_on};
 use crate::motion::Motion;
-use crate::vector::{add, along, cross, dot, norm, scale, squared_distance, subtract};
+use crate::vector::{add, along, bounds, cross, dot, norm, scale, squared_distance, subtract};
 
 /// How two solids, or two of their triangles, are to each other.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -39,15 +38,92 @@ pub enum Indefinite {
     CrossesItself,
 }
 
+/// A corner in a tree of sides: those closer to the root come first.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Branch {
+    /// The corner.
+    pub to: u32,
+    /// The corner before it, unless it is the root.
+    pub from: Option<Stem>,
+}
+
+/// The side that leads to a corner.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Stem {
+    pub corner: u32,
+    /// A triangle with that side, and the side's number in it.
+    pub triangle: u32,
+    pub side: u8,
+    /// Whether the triangle runs along the side from the root outward.
+    pub forward: bool,
+}
+
+/// Trees of sides from corner to corner, breadth first.
+fn forest(corners: &[[u32; 3]], count: usize) -> Vec<Branch> {
+    let mut sides: Vec<(u32, Branch)> = Vec::with_capacity(6 * corners.len());
+    for (triangle, corners) in (0..).zip(corners) {
+        for side in 0..3u8 {
+            let ends = [
+                corners[usize::from(side)],
+                corners[(usize::from(side) + 1) % 3],
+            ];
+            for forward in [true, false] {
+                let [corner, to] = if forward { ends } else { [ends[1], ends[0]] };
+                let stem = Stem {
+                    corner,
+                    triangle,
+                    side,
+                    forward,
+                };
+                sides.push((
+                    corner,
+                    Branch {
+                        to,
+                        from: Some(stem),
+                    },
+                ));
+            }
+        }
+    }
+    sides.sort_by_key(|(corner, _)| *corner);
+    let mut known = vec![false; count];
+    let mut forest = Vec::with_capacity(count);
+    for [root, ..] in corners {
+        if std::mem::replace(&mut known[*root as usize], true) {
+            continue;
+        }
+        let mut next = forest.len();
+        forest.push(Branch {
+            to: *root,
+            from: None,
+        });
+        while let Some(&Branch { to, .. }) = forest.get(next) {
+            let first = sides.partition_point(|(corner, _)| *corner < to);
+            for (_, branch) in sides[first..]
+                .iter()
+                .take_while(|(corner, _)| *corner == to)
+            {
+                if !std::mem::replace(&mut known[branch.to as usize], true) {
+                    forest.push(*branch);
+                }
+            }
+            next += 1;
+        }
+    }
+    forest
+}
+
 /// A solid whose surface is closed and does not cross itself. If such surfaces cross, the solids meet. If not, they meet
 /// only if a connected part of one surface is inside the other solid.
 #[derive(Clone, Debug)]
 pub struct ExactSolid {
     pub(super) solid: Solid,
-    /// A corner of each connected part of the surface, in the solid's coordinates.
-    part_corners: Vec<[f64; 3]>,
     /// Corners of the triangles that have an area, by their number among these.
     pub(super) corners: Vec<[u32; 3]>,
+    /// Trees of sides that hold all corners, one per connected part of the surface.
+    pub(super) forest: Vec<Branch>,
+    /// A corner of each part, in the solid's coordinates.
+    part_corners: Vec<[f64; 3]>,
     /// Area of the surface.
     pub(super) area: f64,
 }
@@ -64,10 +140,15 @@ impl ExactSolid {
         if !is_simple(solid) {
             return Err(Indefinite::CrossesItself);
         }
+        let corners = solid.corners();
+        let forest = forest(&corners, solid.mesh().positions().len());
+        let roots = forest.iter().filter(|branch| branch.from.is_none());
+        let roots = roots.map(|branch| solid.mesh().positions()[branch.to as usize]);
         Ok(Self {
             solid: solid.clone(),
-            part_corners: part_corners(solid),
-            corners: solid.corners(),
+            part_corners: roots.collect(),
+            corners,
+            forest,
             area: solid.mesh().area(),
         })
     }
@@ -97,6 +178,9 @@ pub(super) struct Place {
     /// Bound of the rounding of a coordinate.
     pub delta: f64,
 }
+
+/// Lowest and highest corner of a box.
+type Bounds = ([f64; 3], [f64; 3]);
 
 /// Triangles with an area, by their corners.
 pub(super) type Triangle = [[f64; 3]; 3];
@@ -135,29 +219,29 @@ impl Place {
         [0, 1, 2].map(|axis| dot(self.rows.map(|row| row[axis]), way))
     }
 
-    /// Whether the boxes of two nodes are no farther apart than `margin` along any of their axes.
-    pub fn near(&self, [a, b]: [&([f64; 3], [f64; 3]); 2], margin: f64) -> bool {
-        let middle =
-            |(low, high): &([f64; 3], [f64; 3])| [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
-        let half = |(low, high): &([f64; 3], [f64; 3])| [0, 1, 2].map(|i| 0.5 * (high[i] - low[i]));
+    /// Largest gap of the boxes of two nodes along any of their axes: the nodes are no closer. Negative if they overlap.
+    fn gap(&self, [a, b]: [&Bounds; 2]) -> f64 {
+        let middle = |(low, high): &Bounds| [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
+        let half = |(low, high): &Bounds| [0, 1, 2].map(|i| 0.5 * (high[i] - low[i]));
         let (first, second) = (half(a), half(b));
         let way = subtract(self.apply(middle(b)), middle(a));
         let absolute = self.rows.map(|row| row.map(f64::abs));
-        let margin = margin + 4.0 * self.delta;
-        let square = self.ratio * self.ratio;
-        (0..3).all(|i| way[i].abs() <= first[i] + dot(absolute[i], second) + margin)
-            && (0..3).all(|j| {
-                let column = self.rows.map(|row| row[j]);
-                let reach = dot(absolute.map(|row| row[j]), first) + square * second[j];
-                dot(column, way).abs() <= reach + self.ratio * margin
-            })
+        let (inverse, mut gap) = (1.0 / self.ratio, f64::NEG_INFINITY);
+        for i in 0..3 {
+            gap = gap.max(way[i].abs() - first[i] - dot(absolute[i], second));
+            let along = dot(self.rows.map(|row| row[i]), way).abs();
+            let reach = dot(absolute.map(|row| row[i]), first);
+            gap = gap.max((along - reach) * inverse - self.ratio * second[i]);
+        }
+        gap - 4.0 * self.delta
     }
 }
 
 /// Searches pairs of triangles of two solids. Buffers are kept from one search to the next.
 #[derive(Debug, Default)]
 pub struct SurfacePairs {
-    open: Vec<[u32; 2]>,
+    /// Pairs of nodes, with the gap of their boxes.
+    open: Vec<(f64, [u32; 2])>,
 }
 
 impl SurfacePairs {
@@ -241,8 +325,8 @@ impl SurfacePairs {
         })
     }
 
-    /// Calls `found` with the triangles, numbered and the second ones moved, of leaves whose boxes are within
-    /// `margin`, until it returns false.
+    /// Calls `found` with the triangles, numbered and the second ones moved, whose boxes are within `margin`, until it
+    /// returns false. The nearest boxes come first.
     pub(super) fn visit(
         &mut self,
         solids: [&Solid; 2],
@@ -251,32 +335,47 @@ impl SurfacePairs {
         mut found: impl FnMut([&(usize, Triangle); 2]) -> bool,
     ) {
         let [a, b] = solids.map(Solid::boxes);
+        let gap = |[i, j]: [u32; 2]| place.gap([&a[i as usize].known, &b[j as usize].known]);
         self.open.clear();
-        self.open.push([0, 0]);
-        while let Some(nodes) = self.open.pop() {
-            let [first, second] = [&a[nodes[0] as usize], &b[nodes[1] as usize]];
-            if !place.near([&first.known, &second.known], margin()) {
+        self.open.push((gap([0, 0]), [0, 0]));
+        while let Some((least, nodes)) = self.open.pop() {
+            if least > margin() {
                 continue;
             }
+            let [first, second] = [&a[nodes[0] as usize], &b[nodes[1] as usize]];
             if first.second == 0 && second.second == 0 {
+                let firsts = &solids[0].triangles()[first.first..][..first.count];
                 for (number, triangle) in &solids[1].triangles()[second.first..][..second.count] {
                     let moved = (*number, place.moved(*triangle));
-                    for triangle in &solids[0].triangles()[first.first..][..first.count] {
-                        if !found([triangle, &moved]) {
+                    let (low, high) = bounds(moved.1);
+                    for triangle in firsts {
+                        let reach = margin() + 4.0 * place.delta;
+                        let near = |axis: usize| {
+                            let [p, q, r] = triangle.1.map(|corner| corner[axis]);
+                            p.min(q).min(r) - high[axis] <= reach
+                                && low[axis] - p.max(q).max(r) <= reach
+                        };
+                        if near(0) && near(1) && near(2) && !found([triangle, &moved]) {
                             return;
                         }
                     }
                 }
                 continue;
             }
-            let size = |(low, high): &([f64; 3], [f64; 3])| squared_distance(*low, *high);
+            let size = |(low, high): &Bounds| squared_distance(*low, *high);
             let larger = size(&second.known) * place.ratio.powi(2) > size(&first.known);
             let side = usize::from(first.second == 0 || (second.second != 0 && larger));
-            let split = [first, second][side];
-            let mut children = [nodes, nodes];
-            children[0][side] = split.second as u32;
-            children[1][side] = nodes[side] + 1;
-            self.open.extend(children);
+            let mut halves = [(0.0, nodes), (0.0, nodes)];
+            halves[0].1[side] = [first, second][side].second as u32;
+            halves[1].1[side] = nodes[side] + 1;
+            for half in &mut halves {
+                half.0 = gap(half.1);
+            }
+            if halves[0].0 < halves[1].0 {
+                halves.swap(0, 1);
+            }
+            let within = |half: &(f64, _)| half.0 <= margin();
+            self.open.extend(halves.into_iter().filter(within));
         }
     }
 }
@@ -303,23 +402,6 @@ fn is_simple(solid: &Solid) -> bool {
         },
     );
     simple
-}
-
-fn part_corners(solid: &Solid) -> Vec<[f64; 3]> {
-    let mesh = solid.mesh();
-    let mut sets = Sets::new(mesh.positions().len());
-    for [a, b, c] in mesh.triangles() {
-        sets.join(*a as usize, *b as usize);
-        sets.join(*a as usize, *c as usize);
-    }
-    let corners = mesh.triangles().iter().map(|[corner, ..]| *corner as usize);
-    let mut roots: Vec<usize> = corners.map(|corner| sets.root(corner)).collect();
-    roots.sort_unstable();
-    roots.dedup();
-    roots
-        .into_iter()
-        .map(|root| mesh.positions()[root])
-        .collect()
 }
 
 /// How two triangles are to each other, with coordinates that may be off by `delta`.
@@ -430,6 +512,8 @@ pub(super) struct End {
     pub of_second: bool,
     /// Number of the side: it begins at the corner of this number.
     pub side: usize,
+    /// Share of the side before the point.
+    pub share: f64,
     /// Whether the side leaves the solid behind the other triangle there.
     pub leaves: bool,
 }
@@ -457,9 +541,11 @@ pub(super) fn relation(a: &Triangle, b: &Triangle, delta: f64) -> Relation {
                 Some(true) => {
                     let [from, to] = [sides.heights[side], sides.heights[next]];
                     let way = subtract(other[next], other[side]);
+                    let share = from / (from - to);
                     if let Some(end) = ends.get_mut(found) {
                         *end = Some(End {
-                            point: along(other[side], from / (from - to), way),
+                            point: along(other[side], share, way),
+                            share,
                             of_second: second == 1,
                             side,
                             leaves: signs[1] > 0,

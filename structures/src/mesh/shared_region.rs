@@ -15,15 +15,17 @@
 //! On the third side an exit from the other solid at c counts as the piece from the side's beginning to c, an entry as
 //! minus that. If the end of the side is inside, it counts as an exit. No pieces are put in order, and no polygon is made.
 //!
-//! Corners that are joined by a side that nothing crosses are both inside or both outside, so one inside test serves many.
+//! One corner of each connected part of a surface is tested for being inside. From there sides lead to all others. Both
+//! ends of a side that nothing crosses are inside or both are not; else the crossing next to an end decides.
 //!
 //! # Degenerate poses
 //!
 //! All this needs signs that rounding cannot change. If a pair of triangles has others, as flush faces have, the second
 //! solid is moved by a small part of its size and the sums are made again. The bound covers that.
 
-use crate::mesh::contact::{ExactSolid, Place, Relation, SurfacePairs, Triangle, relation};
-use crate::mesh::repair::edges::Sets;
+use crate::mesh::contact::{
+    Branch, End, ExactSolid, Place, Relation, SurfacePairs, Triangle, relation,
+};
 use crate::mesh::triangle_mesh::doubled_normal;
 use crate::motion::Motion;
 use crate::vector::{add, along, cross, dot, norm, scale, subtract};
@@ -52,24 +54,30 @@ pub struct SharedRegions {
 /// Buffers of one solid.
 #[derive(Debug, Default)]
 struct Side {
-    /// Triangles near the other solid, numbered, in the first solid's coordinates.
-    near: Vec<(usize, Triangle)>,
-    /// Of each triangle that has an area: which of its sides are crossed, a bit each.
-    crossed: Vec<u8>,
-    /// Corners that are inside or outside together.
-    sets: Sets,
-    /// Of each set by its root: whether it is inside; `None` before that is known.
-    inside: Vec<Option<bool>>,
+    crossings: Vec<Crossings>,
+    /// Of each side of each triangle: one more than the place of its crossings, zero if there are none.
+    places: Vec<u32>,
+    /// Of each corner: whether it is inside the other solid.
+    inside: Vec<bool>,
 }
 
-/// Where a triangle crosses another: the segment in the first, directed so that the other solid is to its left.
+/// Where a side crosses the other surface first and last: the share of the side, and whether it leaves the other solid.
+#[derive(Debug)]
+struct Crossings {
+    /// Number of the side: three times its triangle's, and its own.
+    side: usize,
+    first: (f64, bool),
+    last: (f64, bool),
+}
+
+/// A piece of the boundary of a triangle's part in the other solid.
 #[derive(Debug)]
 struct Cut {
-    /// The solid whose triangle is cut.
+    /// The solid whose triangle it is.
     side: usize,
     triangle: Triangle,
-    from: [f64; 3],
-    to: [f64; 3],
+    piece: [[f64; 3]; 2],
+    /// -1 if the piece runs the other way, or counts as taken away.
     sign: f64,
 }
 
@@ -99,6 +107,13 @@ impl Sums {
         let area = 0.5 * sign * dot(normal, cross(u, v));
         let middle = along(corner, 1.0 / 3.0, add(u, v));
         self.add_part(normal, area, corner, middle);
+    }
+
+    /// Adds a triangle: of its three sides the third one, from beginning to end.
+    fn add_whole(&mut self, triangle: &Triangle) {
+        let [a, b, c] = *triangle;
+        let middle = scale(add(a, add(b, c)), 1.0 / 3.0);
+        self.add_part(doubled_normal(*triangle), 0.5, a, middle);
     }
 
     fn add_part(&mut self, normal: [f64; 3], area: f64, on_plane: [f64; 3], middle: [f64; 3]) {
@@ -142,61 +157,44 @@ impl SharedRegions {
     /// The sums over both surfaces; `None` at a degenerate pose.
     fn sums(&mut self, solids: [&ExactSolid; 2], place: &Place) -> Option<[Sums; 2]> {
         let [a, b] = solids.map(|solid| &solid.solid);
-        let boxes = [a, b].map(|solid| {
-            let half = solid.half_sides();
-            (half.map(|side| -side), half)
-        });
-        let [first, second] = &mut self.sides;
-        first.begin(solids[0]);
-        second.begin(solids[1]);
-        a.visit(
-            |node| place.near([node, &boxes[1]], 0.0),
-            |&triangle| first.near.push(triangle),
-        );
-        b.visit(
-            |node| place.near([&boxes[0], node], 0.0),
-            |&(number, triangle)| second.near.push((number, place.moved(triangle))),
-        );
-        let (cuts, mut generic) = (&mut self.cuts, true);
+        let (sides, cuts) = (&mut self.sides, &mut self.cuts);
+        for (side, solid) in sides.iter_mut().zip(solids) {
+            side.begin(solid);
+        }
         cuts.clear();
+        let mut generic = true;
         self.pairs.visit(
             [a, b],
             place,
             || 0.0,
-            |[(i, one), (j, other)]| {
-                match relation(one, other, place.delta) {
+            |pair| {
+                match relation(&pair[0].1, &pair[1].1, place.delta) {
                     Relation::Apart => {}
                     Relation::Open => generic = false,
                     Relation::Cross(ends) => {
-                        let [from, to] = [ends[0].point, ends[1].point];
-                        let ahead = dot(
-                            cross(doubled_normal(*one), doubled_normal(*other)),
-                            subtract(to, from),
-                        );
-                        let sign = ahead.signum();
-                        let cut = |side, triangle, sign| Cut {
-                            side,
-                            triangle,
-                            from,
-                            to,
-                            sign,
-                        };
-                        cuts.push(cut(0, *one, sign));
-                        cuts.push(cut(1, *other, -sign));
+                        let normals = pair.map(|(_, triangle)| doubled_normal(*triangle));
+                        let [from, to] = ends.map(|end| end.point);
+                        let ahead = dot(cross(normals[0], normals[1]), subtract(to, from));
+                        for (side, (sign, (_, triangle))) in
+                            [1.0, -1.0].into_iter().zip(pair).enumerate()
+                        {
+                            cuts.push(Cut {
+                                side,
+                                triangle: *triangle,
+                                piece: [from, to],
+                                sign: sign * ahead.signum(),
+                            });
+                        }
                         for end in ends {
-                            let (side, number, triangle) = match end.of_second {
-                                false => (&mut *first, *i, one),
-                                true => (&mut *second, *j, other),
-                            };
-                            side.crossed[number] |= 1 << end.side;
+                            let side = usize::from(end.of_second);
+                            let (number, triangle) = pair[side];
+                            sides[side].cross(*number, &end);
                             if end.side == 1 {
-                                let sign = if end.leaves { 1.0 } else { -1.0 };
                                 cuts.push(Cut {
-                                    side: usize::from(end.of_second),
+                                    side,
                                     triangle: *triangle,
-                                    from: triangle[1],
-                                    to: end.point,
-                                    sign,
+                                    piece: [triangle[1], end.point],
+                                    sign: if end.leaves { 1.0 } else { -1.0 },
                                 });
                             }
                         }
@@ -210,51 +208,83 @@ impl SharedRegions {
         }
         let mut sums = [Sums::default(); 2];
         for cut in cuts {
-            sums[cut.side].add(&cut.triangle, [cut.from, cut.to], cut.sign);
+            sums[cut.side].add(&cut.triangle, cut.piece, cut.sign);
         }
-        first.add_whole(
-            solids[0],
-            |corner| b.is_inside(place.back(corner)),
-            &mut sums[0],
-        );
-        second.add_whole(solids[1], |corner| a.is_inside(corner), &mut sums[1]);
+        sides[0].find_inside(solids[0], |corner| b.is_inside(place.back(corner)));
+        sides[1].find_inside(solids[1], |corner| a.is_inside(place.apply(corner)));
+        for (number, triangle) in a.triangles() {
+            if sides[0].ends_inside(solids[0], *number) {
+                sums[0].add_whole(triangle);
+            }
+        }
+        for (number, triangle) in b.triangles() {
+            if sides[1].ends_inside(solids[1], *number) {
+                sums[1].add_whole(&place.moved(*triangle));
+            }
+        }
         Some(sums)
     }
 }
 
 impl Side {
     fn begin(&mut self, solid: &ExactSolid) {
-        self.near.clear();
-        self.crossed.clear();
-        self.crossed.resize(solid.corners.len(), 0);
+        for crossings in self.crossings.drain(..) {
+            self.places[crossings.side] = 0;
+        }
+        // All zero: a solid of another size may follow.
+        self.places.resize(3 * solid.corners.len(), 0);
     }
 
-    /// Adds the third sides that end inside the other solid, to whose `is_inside` corners are given.
-    fn add_whole(
-        &mut self,
-        solid: &ExactSolid,
-        is_inside: impl Fn([f64; 3]) -> bool,
-        sums: &mut Sums,
-    ) {
-        let count = solid.solid.mesh().positions().len();
-        self.sets.reset(count);
-        self.inside.clear();
-        self.inside.resize(count, None);
-        for (number, _) in &self.near {
-            let corners = solid.corners[*number];
-            for side in 0..3 {
-                if self.crossed[*number] & (1 << side) == 0 {
-                    let [from, to] = [corners[side], corners[(side + 1) % 3]];
-                    self.sets.join(from as usize, to as usize);
+    /// Notes that a side of a triangle crosses the other surface.
+    fn cross(&mut self, triangle: usize, end: &End) {
+        let side = 3 * triangle + end.side;
+        let here = (end.share, end.leaves);
+        match self.places[side].checked_sub(1) {
+            Some(place) => {
+                let known = &mut self.crossings[place as usize];
+                if end.share < known.first.0 {
+                    known.first = here;
+                }
+                if end.share > known.last.0 {
+                    known.last = here;
                 }
             }
-        }
-        for (number, triangle) in &self.near {
-            let root = self.sets.root(solid.corners[*number][2] as usize);
-            let inside = *self.inside[root].get_or_insert_with(|| is_inside(triangle[2]));
-            if inside {
-                sums.add(triangle, [triangle[1], triangle[2]], 1.0);
+            None => {
+                let (first, last) = (here, here);
+                self.crossings.push(Crossings { side, first, last });
+                self.places[side] = self.crossings.len() as u32;
             }
         }
+    }
+
+    /// Finds which corners are inside the other solid, to whose `is_inside` those of the roots are given.
+    fn find_inside(&mut self, solid: &ExactSolid, is_inside: impl Fn([f64; 3]) -> bool) {
+        let positions = solid.solid.mesh().positions();
+        self.inside.clear();
+        self.inside.resize(positions.len(), false);
+        for Branch { to, from } in &solid.forest {
+            let inside = match from {
+                None => is_inside(positions[*to as usize]),
+                Some(stem) => {
+                    let side = 3 * stem.triangle as usize + usize::from(stem.side);
+                    match self.places[side].checked_sub(1) {
+                        None => self.inside[stem.corner as usize],
+                        Some(place) => {
+                            let crossings = &self.crossings[place as usize];
+                            match stem.forward {
+                                true => !crossings.last.1,
+                                false => crossings.first.1,
+                            }
+                        }
+                    }
+                }
+            };
+            self.inside[*to as usize] = inside;
+        }
+    }
+
+    /// Whether the third side of a triangle ends inside the other solid.
+    fn ends_inside(&self, solid: &ExactSolid, triangle: usize) -> bool {
+        self.inside[solid.corners[triangle][2] as usize]
     }
 }

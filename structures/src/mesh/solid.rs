@@ -155,33 +155,6 @@ impl Solid {
             .collect()
     }
 
-    /// Calls `found` with the triangles that have an area, numbered, of leaves whose boxes `enter` accepts, as it does
-    /// the boxes above them.
-    pub(super) fn visit(
-        &self,
-        enter: impl Fn(&([f64; 3], [f64; 3])) -> bool,
-        mut found: impl FnMut(&(usize, [[f64; 3]; 3])),
-    ) {
-        let mut at = 0;
-        let mut later = Vec::new();
-        loop {
-            let node = &self.boxes[at];
-            if enter(&node.known) {
-                if node.second != 0 {
-                    later.push(node.second);
-                    at += 1;
-                    continue;
-                }
-                let own = &self.triangles[node.first..node.first + node.count];
-                own.iter().for_each(&mut found);
-            }
-            match later.pop() {
-                Some(next) => at = next,
-                None => return,
-            }
-        }
-    }
-
     /// Whether a point is inside: its generalised winding number is above one half.
     pub fn is_inside(&self, point: [f64; 3]) -> bool {
         // No point beyond the bounding box is inside a closed mesh, nor was meant to be inside an open one.

@@ -260,19 +260,12 @@ pub(in crate::mesh) fn sorted(triangle: [u32; 3]) -> ([u32; 3], usize) {
 }
 
 /// Sets that are joined step by step; each is known by its least member.
-#[derive(Debug, Default)]
 pub(in crate::mesh) struct Sets(Vec<usize>);
 
 impl Sets {
     /// Sets of one member each.
     pub fn new(count: usize) -> Self {
         Self((0..count).collect())
-    }
-
-    /// Sets of one member each, in the same memory.
-    pub fn reset(&mut self, count: usize) {
-        self.0.clear();
-        self.0.extend(0..count);
     }
 
     /// The least member of a member's set.
