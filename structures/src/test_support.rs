@@ -4,8 +4,22 @@ use crate::molecule::{Atom, Format, InputSpec, Molecule, ReadOptions, read};
 
 /// A box of these half sides about the origin.
 pub fn cuboid(half: [f64; 3]) -> crate::mesh::Solid {
+    cuboid_between(half.map(|side| -side), half)
+}
+
+/// A box from its lowest to its highest corner.
+#[cfg(feature = "mesh")]
+pub fn cuboid_between(low: [f64; 3], high: [f64; 3]) -> crate::mesh::Solid {
     let positions: Vec<[f64; 3]> = (0..8)
-        .map(|i| [0, 1, 2].map(|axis| half[axis] * (2.0 * f64::from(i >> axis & 1) - 1.0)))
+        .map(|i| {
+            [0, 1, 2].map(|axis| {
+                if i >> axis & 1 == 1 {
+                    high[axis]
+                } else {
+                    low[axis]
+                }
+            })
+        })
         .collect();
     let quads = [
         [0, 4, 6, 2],

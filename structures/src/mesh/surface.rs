@@ -111,9 +111,11 @@ impl SurfaceBlock<'_> {
 /// The two halves of a triangle, cut at its longest side: from the side's beginning to its middle, and on to its end.
 fn halved([a, b, c]: [[f64; 3]; 3]) -> [[[f64; 3]; 3]; 2] {
     let [ab, bc, ca] = [(a, b), (b, c), (c, a)].map(|(p, q)| squared_distance(p, q));
-    let [a, b, c] = if ab >= bc && ab >= ca {
+    // The first of sides that are as long as each other, whatever their last digits.
+    let longest = (1.0 - 1e-9) * ab.max(bc).max(ca);
+    let [a, b, c] = if ab >= longest {
         [a, b, c]
-    } else if bc >= ca {
+    } else if bc >= longest {
         [b, c, a]
     } else {
         [c, a, b]

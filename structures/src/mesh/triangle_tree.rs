@@ -1,9 +1,13 @@
 //! Triangles in a binary tree of clusters, with the moments that sums over far clusters need.
 
+use std::cmp::Ordering;
+
 use crate::mesh::triangle_mesh::{Mesh, centroid, doubled_normal};
 use crate::vector::{add, bounds, distance, norm, scale};
 
 const LEAF: usize = 8;
+/// Step to which places are rounded before they are compared: the solid is about one long.
+const ROUNDED: f64 = 1e-9;
 
 /// A binary tree over triangles that have an area; halves at the median of the longest side.
 #[derive(Clone, Debug)]
@@ -121,11 +125,17 @@ fn build(triangles: &mut [Placed], first: usize, nodes: &mut Vec<Cluster>) {
     if triangles.len() <= LEAF {
         return;
     }
-    let axis = (0..3)
-        .max_by(|&a, &b| (high[a] - low[a]).total_cmp(&(high[b] - low[b])))
-        .unwrap_or(0);
+    // Last digits neither choose between sides of one length nor order what is level.
+    let side = |axis: usize| ((high[axis] - low[axis]) / ROUNDED).round();
+    let axis = (0..3).max_by(|&a, &b| side(a).total_cmp(&side(b)));
+    let axis = axis.unwrap_or(0);
     let middle = triangles.len() / 2;
-    triangles.select_nth_unstable_by(middle, |a, b| a.0[axis].total_cmp(&b.0[axis]));
+    triangles.select_nth_unstable_by(middle, |a, b| {
+        let part =
+            |triangle: &Placed, step: usize| (triangle.0[(axis + step) % 3] / ROUNDED).round();
+        let steps = (0..3).map(|step| part(a, step).total_cmp(&part(b, step)));
+        steps.fold(Ordering::Equal, Ordering::then)
+    });
     let (left, right) = triangles.split_at_mut(middle);
     build(left, first, nodes);
     build(right, first + middle, nodes);

@@ -112,14 +112,30 @@ pub fn cover_nodes(field: &DepthField, mu: f64) -> Vec<Ball> {
     take_nodes(field, &nodes, &radii, mu)
 }
 
+/// Symmetric solids have many nodes of one radius and density, which the last digits must not order: they change with
+/// the unit and the place of the file. Numbers that differ by less than this share of the largest count as equal.
+const TIES: f64 = 1e-9;
+
+/// Numbers rounded to multiples of [`TIES`] of the largest.
+fn rounded(numbers: &[f64]) -> Vec<f64> {
+    let largest = numbers
+        .iter()
+        .fold(0.0, |most: f64, number| most.max(number.abs()));
+    let unit = 1.0 / (TIES * largest.max(f64::MIN_POSITIVE));
+    numbers
+        .iter()
+        .map(|number| (number * unit).round())
+        .collect()
+}
+
 fn take_nodes(field: &DepthField, nodes: &[usize], priorities: &[f64], mu: f64) -> Vec<Ball> {
-    let mut queue: Vec<usize> = (0..nodes.len()).collect();
     // Ties: the larger ball, then the lower index, so that the order does not depend on the sort.
+    let (priorities, radii) = (rounded(priorities), rounded(&field.depth));
+    let mut queue: Vec<usize> = (0..nodes.len()).collect();
     queue.sort_unstable_by(|&a, &b| {
-        let radius = |place: usize| field.depth[nodes[place]];
         priorities[b]
             .total_cmp(&priorities[a])
-            .then(radius(b).total_cmp(&radius(a)))
+            .then(radii[nodes[b]].total_cmp(&radii[nodes[a]]))
             .then(nodes[a].cmp(&nodes[b]))
     });
     let mut struck = vec![false; field.depth.len()];
@@ -147,7 +163,8 @@ fn take_nodes(field: &DepthField, nodes: &[usize], priorities: &[f64], mu: f64) 
                     covered[other] = true;
                     left -= 1;
                 }
-                if radius <= ball.radius && squared.sqrt() - (ball.radius - radius) <= mu * radius {
+                let beyond = squared.sqrt() - (ball.radius - radius);
+                if radii[other] <= radii[node] && beyond <= mu * radius + TIES * ball.radius {
                     struck[other] = true;
                 }
             });
@@ -161,7 +178,9 @@ fn take_nodes(field: &DepthField, nodes: &[usize], priorities: &[f64], mu: f64) 
 /// Step 3: which balls to keep, in rising order.
 pub(crate) fn reduce(balls: &[Ball], epsilon: f64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..balls.len()).collect();
-    order.sort_by(|&a, &b| balls[b].radius.total_cmp(&balls[a].radius).then(a.cmp(&b)));
+    let radii: Vec<f64> = balls.iter().map(|ball| ball.radius).collect();
+    let radii = rounded(&radii);
+    order.sort_by(|&a, &b| radii[b].total_cmp(&radii[a]).then(a.cmp(&b)));
     // Balls up to four eps are looked up in cells of their reach; the few larger ones are tried in turn.
     let mut large: Vec<Ball> = Vec::new();
     let mut small = SpatialHash::new(5.0 * epsilon);
@@ -191,7 +210,7 @@ pub(crate) fn reduce(balls: &[Ball], epsilon: f64) -> Vec<usize> {
 mod tests {
     use super::*;
     use crate::sampling::grid::Grid;
-    use crate::test_support::cuboid;
+    use crate::test_support::{cuboid, cuboid_between};
 
     /// As printed, |r(x) - r(x')| lets a small ball strike a larger one that contains it: with the smallest balls taken
     /// first the middle of the cube then goes missing. And whatever the order and mu, every node must end up covered.
@@ -220,6 +239,37 @@ mod tests {
             // The ball that touches all faces is in no other, so nothing may strike it before every node is covered.
             let balls = take_nodes(&field, &nodes, &jumbled, 0.0);
             assert!(balls.iter().any(|ball| ball.radius == 0.5));
+        }
+    }
+
+    /// A box has thousands of ties. In another unit and at another place it is the same box.
+    #[test]
+    fn balls_do_not_depend_on_the_unit_or_the_place() {
+        let corners = |scale: f64, shift: f64| {
+            let corner = |x: f64, by: f64| x * scale + by * shift;
+            cuboid_between(
+                [corner(-1.5, 0.3), corner(-1.0, 0.7), corner(-0.5, -0.2)],
+                [corner(1.5, 0.3), corner(1.0, 0.7), corner(0.5, -0.2)],
+            )
+        };
+        let balls = |scale: f64, shift: f64| {
+            let solid = corners(scale, shift);
+            let field = DepthField::new(&solid, Grid::new(&solid, 24));
+            let found = decompose(&solid, &field, &DecompositionOptions::default()).unwrap();
+            let unit = solid.frame().unit / scale;
+            let scaled = |ball: &Ball| Ball::new(ball.center.map(|x| x * unit), ball.radius * unit);
+            [&found.a1, &found.a3].map(|set| set.iter().map(scaled).collect::<Vec<_>>())
+        };
+        let first = balls(1.0, 0.0);
+        for (scale, shift) in [(1e3, 0.0), (0.7, 0.0), (1.0, 1.0), (1e3, 1e3)] {
+            for (one, other) in first.iter().zip(balls(scale, shift)) {
+                assert_eq!(one.len(), other.len(), "{scale} {shift}");
+                for (one, other) in one.iter().zip(&other) {
+                    let off = crate::vector::distance(one.center, other.center);
+                    let off = off + (one.radius - other.radius).abs();
+                    assert!(off < 1e-10, "{scale} {shift}: {one:?} {other:?}");
+                }
+            }
         }
     }
 
