@@ -1,5 +1,5 @@
-//! Collisions of ball solids beside parry3d's exact ones of their meshes: no verdict contradicts it, and the distance
-//! of separate solids is between the bounds. `scripts/checks/check_solids.py` does the same with coal and
+//! Collisions beside parry3d's: no verdict contradicts it, none is open, and distances are the same. Verdicts by balls alone
+//! do not contradict it either, and their bounds hold the distance. `scripts/checks/check_solids.py` does the same with coal and
 //! Manifold, and more poses.
 
 #[path = "../benches/collide/path.rs"]
@@ -11,7 +11,7 @@ mod peers;
 
 use crate::docking_parts::{Part, linked_torus, peg_and_hole};
 use knotdock::Collision;
-use knotdock::geometry::collide::Verdict;
+use knotdock::geometry::collide::{Method, Verdict};
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::BallSolid;
 use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
@@ -72,7 +72,7 @@ fn holds(mesh: &Mesh, point: Vector3<f64>) -> bool {
     mesh.triangles().iter().map(angle).sum::<f64>() > TAU
 }
 
-/// Holds the answers on two meshes at poses to parry's; how many poses meet, are nested, and stay undecided.
+/// Holds the answers on two meshes at poses to parry's; how many poses meet, are nested, and are undecided by balls.
 fn compare(meshes: [&Mesh; 2], poses: &[Pose], per_axis: usize) -> [usize; 3] {
     let parry = Parry::new(meshes).unwrap();
     let solids = meshes.map(|mesh| {
@@ -80,11 +80,10 @@ fn compare(meshes: [&Mesh; 2], poses: &[Pose], per_axis: usize) -> [usize; 3] {
             .unwrap()
             .0
     });
-    let collision = Collision::new(&solids[0], &solids[1]).distance(true);
+    let exact = Collision::new(&solids[0], &solids[1]).distance(true);
+    let balls = exact.clone().method(Method::Tree);
     let mut counts = [0; 3];
     for pose in poses {
-        let report = collision.at(pose).unwrap();
-        let (verdict, bounds) = (report.verdict, report.distance.unwrap());
         let corner = Vector3::from(meshes[1].positions()[0]);
         let back =
             |point: [f64; 3]| pose.rotation.inverse() * (Vector3::from(point) - pose.translation);
@@ -93,27 +92,39 @@ fn compare(meshes: [&Mesh; 2], poses: &[Pose], per_axis: usize) -> [usize; 3] {
             && (holds(meshes[0], pose.rotation * corner + pose.translation)
                 || holds(meshes[1], back(meshes[0].positions()[0])));
         let apart = parry.distance(pose).unwrap();
-        let case = format!(
-            "{pose:?}: {verdict:?} {bounds:?}, meet {meet}, nested {nested}, {apart} apart"
-        );
         let rounding = 1e-9;
-        match verdict {
-            Verdict::Hit => assert!(meet || nested, "{case}"),
-            Verdict::Free => assert!(!meet && !nested, "{case}"),
-            Verdict::Undecided => assert!(apart <= collision.band() + rounding, "{case}"),
-        }
-        assert!(bounds.low <= bounds.high, "{case}");
-        if meet || nested {
-            assert!(bounds.low <= rounding, "{case}");
-        } else {
-            assert!(
-                bounds.low <= apart + rounding && apart <= bounds.high + rounding,
-                "{case}"
+        for collision in [&exact, &balls] {
+            let report = collision.at(pose).unwrap();
+            let (verdict, bounds) = (report.verdict, report.distance.unwrap());
+            let case = format!(
+                "{pose:?}: {verdict:?} {bounds:?}, meet {meet}, nested {nested}, {apart} apart"
             );
+            match verdict {
+                Verdict::Hit => assert!(meet || nested, "{case}"),
+                Verdict::Free => assert!(!meet && !nested, "{case}"),
+                Verdict::Undecided => {
+                    assert!(apart <= collision.undecided_band() + rounding, "{case}");
+                    counts[2] += 1;
+                }
+            }
+            assert!(bounds.low <= bounds.high, "{case}");
+            if meet || nested {
+                assert!(bounds.low <= rounding, "{case}");
+            } else {
+                assert!(
+                    bounds.low <= apart + rounding && apart <= bounds.high + rounding,
+                    "{case}"
+                );
+            }
+        }
+        let report = exact.at(pose).unwrap();
+        let bounds = report.distance.unwrap();
+        assert_ne!(report.verdict, Verdict::Undecided, "{pose:?}");
+        if report.verdict == Verdict::Free {
+            assert!(bounds.high - bounds.low < 1e-6, "{pose:?}: {bounds:?}");
         }
         counts[0] += usize::from(meet || nested);
         counts[1] += usize::from(nested);
-        counts[2] += usize::from(verdict == Verdict::Undecided);
     }
     counts
 }
@@ -134,7 +145,7 @@ fn the_path_of_two_bunnies() {
     let bunny = bunny();
     let (low, high) = bunny.bounds();
     let middle = 0.5 * (Vector3::from(low) + Vector3::from(high));
-    let path = path::path(middle, bunny.extent(), path::POSES);
+    let path = path::path([middle; 2], bunny.extent(), path::POSES);
     let poses: Vec<Pose> = path.into_iter().step_by(50).collect();
     let [meet, _, undecided] = compare([&bunny, &bunny], &poses, 32);
     assert!((50..90).contains(&meet), "{meet}");

@@ -1,12 +1,13 @@
-//! What accuracy costs: the path with bunnies of 2^9 to 2^21 nodes.
+//! What the balls' accuracy costs: the path with solids of 2^9 to 2^18 nodes, decided by balls alone, and by triangles.
 
 use crate::Setting;
 use crate::measured::Times;
 use crate::report::Figure;
 use crate::table::{Cell, Table};
 use knotdock::Collision;
-use knotdock::geometry::collide::{Verdict, Workspace};
+use knotdock::geometry::collide::{Method, Verdict, Workspace};
 use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
+use nalgebra::Vector3;
 use std::error::Error;
 use std::time::Instant;
 
@@ -19,8 +20,10 @@ const GREEN: [u8; 3] = [0x00, 0x9e, 0x73];
 const ORANGE: [u8; 3] = [0xe6, 0x9f, 0x00];
 
 struct Row {
+    /// Power of two of the nodes.
     power: u32,
-    /// As a share of the bunny's longest edge.
+    method: Method,
+    /// As a share of the longest edge.
     epsilon: f64,
     balls: usize,
     /// Seconds of sampling.
@@ -32,24 +35,31 @@ struct Row {
     micros: [f64; 3],
     /// 99% of the verdicts' microseconds.
     most: f64,
+    /// Median of the energy over the exact one, at poses that meet.
+    energy: f64,
+    /// Median of the force's angle to the exact one there, in degrees.
+    degrees: f64,
 }
 
 /// The table and the picture.
 pub fn figure(setting: &Setting) -> Result<Figure, Box<dyn Error>> {
-    let rows = (9..=21).map(|power| row(setting, power));
-    let rows = rows.collect::<Result<Vec<_>, _>>()?;
+    let mut rows = Vec::new();
+    for power in 9..=18 {
+        rows.push(row(setting, power, Method::Tree)?);
+    }
+    let exact = row(setting, 15, Method::Auto)?;
     Ok(Figure {
         name: "collide_accuracy",
-        tables: vec![("table", table(&rows))],
         panels: panels(&rows),
+        tables: vec![("table", table(rows.iter().chain([&exact])))],
         columns: 2,
     })
 }
 
-fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
+fn row(setting: &Setting, power: u32, method: Method) -> Result<Row, Box<dyn Error>> {
     let start = Instant::now();
-    let solid = setting.balls(2f64.powf(f64::from(power) / 3.0).round() as usize)?;
-    let collision = Collision::new(&solid, &solid).force(true);
+    let [a, b] = &setting.balls(2f64.powf(f64::from(power) / 3.0).round() as usize)?;
+    let collision = Collision::new(a, b).force(true).method(method);
     collision.prepare()?;
     let making = start.elapsed().as_secs_f64();
     let mut work = Workspace::default();
@@ -62,14 +72,13 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let undecided = verdicts
         .filter(|verdict| *verdict == Verdict::Undecided)
         .count();
-    let mut bands: Vec<f64> = taken
+    let bands: Vec<f64> = taken
         .clone()
         .map(|pose| {
             let bounds = collision.query(&path[pose], &mut work).distance();
             bounds.high - bounds.low
         })
         .collect();
-    bands.sort_by(f64::total_cmp);
     let verdict = Times::of(path.len(), STRIDE, RUNS, |pose| {
         collision.query(&path[pose], &mut work).certificate()
     });
@@ -79,24 +88,49 @@ fn row(setting: &Setting, power: u32) -> Result<Row, Box<dyn Error>> {
     let force = Times::of(path.len(), STRIDE, RUNS, |pose| {
         collision.query(&path[pose], &mut work).contact()
     });
+    let exact = Collision::new(a, b).force(true);
+    let (mut energies, mut degrees) = (Vec::new(), Vec::new());
+    for pose in taken.clone() {
+        let truth = exact.query(&path[pose], &mut work).contact();
+        let ours = collision.query(&path[pose], &mut work).contact();
+        let (Some(truth), Some(ours)) = (truth, ours) else {
+            continue;
+        };
+        if truth.energy > 0.0 {
+            let (force, other) = (Vector3::from(truth.force), Vector3::from(ours.force));
+            energies.push(ours.energy / truth.energy);
+            degrees.push(force.angle(&other).to_degrees());
+        }
+    }
     let spreads = [&verdict, &distance, &force].map(|times| times.spread(|_| true));
     Ok(Row {
         power,
-        epsilon: solid.epsilon() / setting.mesh.extent(),
-        balls: solid.inner().len(),
+        method,
+        epsilon: a.epsilon() / setting.edge(),
+        balls: a.inner().len(),
         making,
         undecided: undecided as f64 / taken.len() as f64,
-        band: bands[bands.len() / 2] / setting.mesh.extent(),
+        band: median(bands) / setting.edge(),
         micros: spreads.map(|spread| spread.map_or(f64::NAN, |spread| spread.median)),
         most: spreads[0].map_or(f64::NAN, |spread| spread.most),
+        energy: median(energies),
+        degrees: median(degrees),
     })
 }
 
-fn table(rows: &[Row]) -> Table {
+fn median(mut numbers: Vec<f64>) -> f64 {
+    numbers.sort_by(f64::total_cmp);
+    numbers.get(numbers.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+fn table<'a>(rows: impl Iterator<Item = &'a Row>) -> Table {
     let percent = |share: f64| Cell::Text(format!("{:.2}%", 100.0 * share));
     let row = |row: &Row| {
         vec![
-            Cell::Count(1 << row.power),
+            Cell::Text(match row.method {
+                Method::Tree => format!("2^{}", row.power),
+                _ => format!("2^{}, triangles", row.power),
+            }),
             percent(row.epsilon),
             Cell::Text(row.balls.to_string()),
             Cell::Number(row.making),
@@ -106,6 +140,8 @@ fn table(rows: &[Row]) -> Table {
             Cell::Number(row.most),
             Cell::Number(row.micros[1]),
             Cell::Number(row.micros[2]),
+            Cell::Number(row.energy),
+            Cell::Number(row.degrees),
         ]
     };
     Table {
@@ -120,8 +156,10 @@ fn table(rows: &[Row]) -> Table {
             "99%",
             "distance (µs)",
             "force and torque (µs)",
+            "energy / shared volume",
+            "force off (degrees)",
         ],
-        rows: rows.iter().map(row).collect(),
+        rows: rows.map(row).collect(),
     }
 }
 

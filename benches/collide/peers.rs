@@ -76,7 +76,7 @@ pub struct CoalRow {
 /// Times coal on every `stride`th pose of a path; the reason where it cannot be had.
 pub fn coal(
     python: &Path,
-    mesh: &Path,
+    meshes: &[PathBuf; 2],
     path: &Path,
     stride: usize,
     runs: usize,
@@ -86,7 +86,7 @@ pub fn coal(
     let table = path.with_file_name("coal.csv");
     let done = Command::new(python)
         .arg(&script)
-        .args([mesh, mesh, path, table.as_path()])
+        .args([&meshes[0], &meshes[1], path, table.as_path()])
         .args(["--stride", &stride.to_string(), "--runs", &runs.to_string()])
         .output();
     let done = match done {

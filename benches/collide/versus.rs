@@ -41,14 +41,15 @@ struct Answers {
 pub fn figure(setting: &Setting, options: &Options) -> Result<Figure, Box<dyn Error>> {
     let per_axis = 2f64.powf(f64::from(options.grid) / 3.0).round() as usize;
     let start = Instant::now();
-    let solid = setting.balls(per_axis)?;
-    let collision = Collision::new(&solid, &solid).force(true);
+    let [a, b] = &setting.balls(per_axis)?;
+    let collision = Collision::new(a, b).force(true);
     collision.prepare()?;
     println!(
-        "bunny on 2^{} nodes: {} inner balls, eps {:.3}% of its edge, made in {:.1} s",
+        "2^{} nodes: {} and {} inner balls, eps {:.3}% of the standing mesh's edge, made in {:.1} s",
         options.grid,
-        solid.inner().len(),
-        100.0 * solid.epsilon() / setting.mesh.extent(),
+        a.inner().len(),
+        b.inner().len(),
+        100.0 * a.epsilon() / setting.edge(),
         start.elapsed().as_secs_f64()
     );
     let answers = answers(setting, options, &collision)?;
@@ -85,7 +86,7 @@ fn answers(
             collision.query(&path[pose], &mut work).contact()
         }),
     ];
-    let parry = Parry::new([&setting.mesh, &setting.mesh])?;
+    let parry = Parry::new(setting.meshes.each_ref())?;
     let parry_times = [
         Times::of(path.len(), options.stride, RUNS, |i| parry.meet(&path[i])),
         Times::of(path.len(), options.stride, RUNS, |i| {
@@ -110,7 +111,7 @@ fn answers(
     let table = options.out.join("path.csv");
     fs::write(&table, path::csv(path))?;
     let python = options.python.clone().unwrap_or_else(python);
-    match coal(&python, &setting.file, &table, options.stride, RUNS) {
+    match coal(&python, &setting.files, &table, options.stride, RUNS) {
         Err(reason) => println!("without coal: {reason}"),
         Ok(rows) => {
             for (row, pose) in rows.iter().zip((0..).step_by(options.stride)) {
@@ -128,7 +129,8 @@ impl Answers {
     /// belong to solids of which one holds the other.
     fn contradicts(&self, pose: usize, meet: bool, gap: f64) -> bool {
         let (verdict, bounds) = (self.verdicts[pose], self.bounds[pose]);
-        let rounding = 1e-9 * (1.0 + gap);
+        // Theirs are good to about a millionth.
+        let rounding = 1e-6 * (1.0 + gap);
         match verdict {
             Verdict::Free if meet => true,
             Verdict::Free => gap < bounds.low - rounding || gap > bounds.high + rounding,
@@ -159,6 +161,9 @@ fn times(answers: &Answers, stride: usize) -> Table {
             let keep = |pose: usize| verdict.is_none_or(|kind| answers.verdicts[pose] == kind);
             let kept = (0..answers.verdicts.len()).filter(|&pose| keep(pose));
             let share = kept.count() as f64 / answers.verdicts.len() as f64;
+            if share == 0.0 {
+                continue;
+            }
             let ours = answers.ours[number].spread(keep);
             // The ratio is of the same poses.
             let same = answers.ours[number].spread(|pose| pose % stride == 0 && keep(pose));

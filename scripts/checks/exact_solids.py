@@ -47,12 +47,22 @@ class Pair:
 
     def exact(self, turn, move):
         """The answer at a pose: y of the second goes to turn y + move."""
-        moved = self.solids[1].transform(np.column_stack([turn, move]))
-        volume = max(0.0, (self.solids[0] ^ moved).volume())
+        volume = self.volume(turn, move)
         distance = self.distance(turn, move)
         # Surfaces that are apart leave all or nothing in common; rounding is far below any solid's volume.
         least = min(abs(solid.volume()) for solid in self.solids)
         return Exact(distance == 0 or volume > 1e-6 * least, distance, volume)
+
+    def force(self, turn, move):
+        """Minus the slope of the shared volume by the move, by central differences."""
+        step = 1e-4 * self.size
+        return np.array(
+            [-(self.volume(turn, move + by) - self.volume(turn, move - by)) / (2 * step) for by in step * np.eye(3)]
+        )
+
+    def volume(self, turn, move):
+        """The volume that both share."""
+        return max(0.0, (self.solids[0] ^ self.solids[1].transform(np.column_stack([turn, move]))).volume())
 
     def poses(self, count, random):
         """Rotations and translations: every other one near contact, the rest anywhere between deep and far."""
