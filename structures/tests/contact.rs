@@ -169,6 +169,8 @@ fn open_and_crossing_meshes_are_refused() {
     for (surface, expected) in [
         (open, Some(Indefinite::NotClosed)),
         (crossing, Some(Indefinite::CrossesItself)),
+        (nested, Some(Indefinite::Nested)),
+        (hollow, None),
         (apart, None),
     ] {
         let surface: Surface = surface;

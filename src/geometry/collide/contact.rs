@@ -117,12 +117,12 @@ impl CollisionQuery<'_> {
         let collision = self.collision;
         let about = self.motion.apply(collision.solids[1].centroid());
         if let Some(region) = self.region() {
-            let force = Vector3::from(region.by_shift).scale(-1.0);
+            let force = region.by_shift.map(|part| 0.0 - part);
             let torque = Vector3::from(about).cross(&Vector3::from(region.by_shift))
                 - Vector3::from(region.by_turn);
             return Some(Contact {
                 energy: region.volume,
-                force: force.into(),
+                force,
                 torque: torque.into(),
                 bound: region.bound,
                 ball_pairs: 0,

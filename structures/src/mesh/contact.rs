@@ -13,6 +13,7 @@
 //! flush, or an edge that grazes another.
 
 use crate::mesh::solid::{Solid, nearest_on};
+use crate::mesh::triangle_mesh::{centroid, doubled_normal};
 use crate::motion::Motion;
 use crate::vector::{add, along, bounds, cross, dot, norm, scale, squared_distance, subtract};
 
@@ -36,6 +37,9 @@ pub enum Indefinite {
     /// Triangles may be within the solid.
     #[error("the mesh crosses itself")]
     CrossesItself,
+    /// Its surface is none of the solid's.
+    #[error("the mesh has a part within another that faces outward")]
+    Nested,
 }
 
 /// A corner in a tree of sides: those closer to the root come first.
@@ -43,74 +47,81 @@ pub enum Indefinite {
 pub(super) struct Branch {
     /// The corner.
     pub to: u32,
-    /// The corner before it, unless it is the root.
-    pub from: Option<Stem>,
+    /// The corner before it and the side between, unless it is the root.
+    pub from: Option<(u32, Run)>,
 }
 
-/// The side that leads to a corner.
+/// A way along a side of a triangle.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Stem {
-    pub corner: u32,
-    /// A triangle with that side, and the side's number in it.
-    pub triangle: u32,
-    pub side: u8,
-    /// Whether the triangle runs along the side from the root outward.
-    pub forward: bool,
-}
+pub(super) struct Run(u32);
 
-/// Trees of sides from corner to corner, breadth first.
-fn forest(corners: &[[u32; 3]], count: usize) -> Vec<Branch> {
-    let mut sides: Vec<(u32, Branch)> = Vec::with_capacity(6 * corners.len());
-    for (triangle, corners) in (0..).zip(corners) {
-        for side in 0..3u8 {
-            let ends = [
-                corners[usize::from(side)],
-                corners[(usize::from(side) + 1) % 3],
-            ];
-            for forward in [true, false] {
-                let [corner, to] = if forward { ends } else { [ends[1], ends[0]] };
-                let stem = Stem {
-                    corner,
-                    triangle,
-                    side,
-                    forward,
-                };
-                sides.push((
-                    corner,
-                    Branch {
-                        to,
-                        from: Some(stem),
-                    },
-                ));
-            }
+impl Run {
+    /// Three times the number of the triangle, and that of the side.
+    pub fn side(self) -> usize {
+        (self.0 / 2) as usize
+    }
+
+    /// Whether the triangle runs along its side the same way.
+    pub fn is_forward(self) -> bool {
+        self.0.is_multiple_of(2)
+    }
+
+    fn ends(self, corners: &[[u32; 3]]) -> [u32; 2] {
+        let (triangle, side) = (corners[self.side() / 3], self.side() % 3);
+        let ends = [triangle[side], triangle[(side + 1) % 3]];
+        if self.is_forward() {
+            ends
+        } else {
+            [ends[1], ends[0]]
         }
     }
-    sides.sort_by_key(|(corner, _)| *corner);
+}
+
+/// Trees of sides from corner to corner, breadth first, and a triangle at the root of each.
+fn forest(corners: &[[u32; 3]], count: usize) -> (Vec<Branch>, Vec<usize>) {
+    let runs = (0..6 * corners.len() as u32).map(Run);
+    let mut runs: Vec<(u32, Run)> = runs.map(|run| (run.ends(corners)[0], run)).collect();
+    runs.sort_unstable_by_key(|(corner, run)| (*corner, run.0));
     let mut known = vec![false; count];
     let mut forest = Vec::with_capacity(count);
-    for [root, ..] in corners {
-        if std::mem::replace(&mut known[*root as usize], true) {
+    let mut firsts = Vec::new();
+    for (triangle, &[root, ..]) in corners.iter().enumerate() {
+        if std::mem::replace(&mut known[root as usize], true) {
             continue;
         }
+        firsts.push(triangle);
         let mut next = forest.len();
         forest.push(Branch {
-            to: *root,
+            to: root,
             from: None,
         });
-        while let Some(&Branch { to, .. }) = forest.get(next) {
-            let first = sides.partition_point(|(corner, _)| *corner < to);
-            for (_, branch) in sides[first..]
+        while let Some(&Branch { to: from, .. }) = forest.get(next) {
+            let first = runs.partition_point(|(corner, _)| *corner < from);
+            for (_, run) in runs[first..]
                 .iter()
-                .take_while(|(corner, _)| *corner == to)
+                .take_while(|(corner, _)| *corner == from)
             {
-                if !std::mem::replace(&mut known[branch.to as usize], true) {
-                    forest.push(*branch);
+                let [_, to] = run.ends(corners);
+                if !std::mem::replace(&mut known[to as usize], true) {
+                    forest.push(Branch {
+                        to,
+                        from: Some((from, *run)),
+                    });
                 }
             }
             next += 1;
         }
     }
-    forest
+    (forest, firsts)
+}
+
+/// Whether the solid is behind a triangle and not in front of it.
+fn bounds_solid(solid: &Solid, triangle: &Triangle) -> bool {
+    let doubled = doubled_normal(*triangle);
+    // A step of a millionth of the triangle's size.
+    let step = 1e-6 / norm(doubled).sqrt();
+    let beside = |sign: f64| along(centroid(*triangle), sign * step, doubled);
+    solid.is_inside(beside(-1.0)) && !solid.is_inside(beside(1.0))
 }
 
 /// A solid whose surface is closed and does not cross itself. If such surfaces cross, the solids meet. If not, they meet
@@ -141,12 +152,18 @@ impl ExactSolid {
             return Err(Indefinite::CrossesItself);
         }
         let corners = solid.corners();
-        let forest = forest(&corners, solid.mesh().positions().len());
-        let roots = forest.iter().filter(|branch| branch.from.is_none());
-        let roots = roots.map(|branch| solid.mesh().positions()[branch.to as usize]);
+        let (forest, firsts) = forest(&corners, solid.mesh().positions().len());
+        let positions = solid.mesh().positions();
+        let firsts = firsts
+            .iter()
+            .map(|&first| corners[first].map(|at| positions[at as usize]));
+        let firsts: Vec<Triangle> = firsts.collect();
+        if !firsts.iter().all(|triangle| bounds_solid(solid, triangle)) {
+            return Err(Indefinite::Nested);
+        }
         Ok(Self {
             solid: solid.clone(),
-            part_corners: roots.collect(),
+            part_corners: firsts.iter().map(|[corner, ..]| *corner).collect(),
             corners,
             forest,
             area: solid.mesh().area(),

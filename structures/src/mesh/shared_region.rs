@@ -265,19 +265,16 @@ impl Side {
         for Branch { to, from } in &solid.forest {
             let inside = match from {
                 None => is_inside(positions[*to as usize]),
-                Some(stem) => {
-                    let side = 3 * stem.triangle as usize + usize::from(stem.side);
-                    match self.places[side].checked_sub(1) {
-                        None => self.inside[stem.corner as usize],
-                        Some(place) => {
-                            let crossings = &self.crossings[place as usize];
-                            match stem.forward {
-                                true => !crossings.last.1,
-                                false => crossings.first.1,
-                            }
+                Some((corner, run)) => match self.places[run.side()].checked_sub(1) {
+                    None => self.inside[*corner as usize],
+                    Some(place) => {
+                        let crossings = &self.crossings[place as usize];
+                        match run.is_forward() {
+                            true => !crossings.last.1,
+                            false => crossings.first.1,
                         }
                     }
-                }
+                },
             };
             self.inside[*to as usize] = inside;
         }
