@@ -8,4 +8,5 @@ pub mod molecules;
 pub mod native;
 pub mod poses;
 pub mod request;
+pub mod robot;
 pub mod solids;

@@ -1,11 +1,13 @@
 //! `knotdock sample`: a mesh as balls.
 
+mod robot;
 mod sample_report;
 
 use std::path::PathBuf;
 use std::time::Instant;
 
 use clap::{Args, ValueEnum};
+use robot::RobotFormat;
 use sample_report::{SampleReport, weights_text};
 use serde_json::json;
 
@@ -29,14 +31,14 @@ use knotdock_structures::sampling::{
 use knotdock_structures::sphere_tree::SphereTree;
 use knotdock_structures::{Error, Knots};
 
-/// Sample a mesh by balls: any closed surface as a few balls that come within a known distance of it.
+/// Sample a mesh by balls, or the links of a robot: any closed surface as a few balls within a known distance of it.
 ///
 /// Reads STL, OBJ, PLY and OFF, in text and binary. The method is Behandish and Ilies' Algorithm 1. A1 lies inside
 /// the solid, A2 is A1 grown by epsilon and covers it, and A3 is A2 without redundant balls. Each is within epsilon
 /// of the solid, which is measured. Lengths are in the file's unit.
 #[derive(Args, Debug)]
 pub struct Sample {
-    /// The mesh: .stl, .obj, .ply or .off.
+    /// The mesh: .stl, .obj, .ply or .off; with --robot a URDF file.
     #[arg(value_name = "MESH")]
     mesh: PathBuf,
     /// Nodes of the grid, as 2^18 or 262144: a cube of the nearest whole number of nodes an axis.
@@ -62,13 +64,17 @@ pub struct Sample {
     /// Exponent of the bump that weights are fitted for, with --weights fitted [default: 2].
     #[arg(long, value_parser = in_range::<f64>(ABOVE_ZERO))]
     alpha: Option<f64>,
-    /// Write no more balls than this: a level of a tree of bounding balls over the set, which covers what the set
-    /// covers.
+    /// Write no more balls than this, with --robot for each link: a level of a tree of bounding balls over the set,
+    /// which covers what the set covers.
     #[arg(long, value_name = "BALLS", value_parser = in_range::<usize>(AT_LEAST_ONE), conflicts_with = "weights")]
     level: Option<usize>,
-    /// The table of balls to write.
-    #[arg(short, long, value_name = "FILE", default_value = "knots.csv")]
-    output: PathBuf,
+    /// Sample all links of a URDF file: the spheres cover the collision geometry of each link, in its frame. Meshes,
+    /// boxes and cylinders are sampled, spheres are kept.
+    #[arg(long, value_enum, value_name = "FORMAT", conflicts_with_all = ["method", "set", "weights", "alpha", "picture", "export"])]
+    robot: Option<RobotFormat>,
+    /// The table of balls to write [default: knots.csv; with --robot spheres.yml, spheres.urdf or spheres.json].
+    #[arg(short, long, value_name = "FILE")]
+    output: Option<PathBuf>,
     /// Draw slices of depth, skeletal density and balls, and the balls from outside.
     #[arg(long, value_name = "FILE.svg")]
     picture: Option<PathBuf>,
@@ -133,8 +139,17 @@ impl Sample {
     }
 
     fn sample(self, console: Console) -> Result<(), Error> {
+        match self.robot {
+            Some(format) => self.sample_robot(format, console),
+            None => self.sample_mesh(console),
+        }
+    }
+
+    fn sample_mesh(self, console: Console) -> Result<(), Error> {
+        let output = self.output.clone();
+        let output = output.unwrap_or_else(|| PathBuf::from("knots.csv"));
         let method = self.method()?;
-        let export = self.check_files(console)?;
+        let export = self.check_files(&output, console)?;
         let start = Instant::now();
         let (mesh, report) = mesh::read(&self.mesh)?;
         let reading = Step::since("reading the mesh", start);
@@ -179,7 +194,7 @@ impl Sample {
         let weights = fitted.map(|fitted| fitted.weights.as_slice());
         let knots = knots(frame, &finished.balls, weights)
             .map_err(|error| Error::input(error).at(&self.mesh))?;
-        let written = self.write(&solid, &knots, &finished.balls, export)?;
+        let written = self.write(&solid, &knots, &finished.balls, &output, export)?;
 
         let reported = SampleReport::new(&sampling, &fits, &solid, &meter);
         console.say(format!("\n{}", reported.text()));
@@ -195,7 +210,7 @@ impl Sample {
             written.join(", ")
         ));
         let mut object = reported.object();
-        object["knots"] = json!(self.output.display().to_string());
+        object["knots"] = json!(output.display().to_string());
         object["files"] = json!(written);
         object["balls"] = json!(knots.len());
         object["set"] = json!(set_name);
@@ -208,9 +223,13 @@ impl Sample {
     }
 
     /// Checks, before any work, that the files to write are not there and can be made; how balls are exported.
-    fn check_files(&self, console: Console) -> Result<Option<ExportBalls>, Error> {
+    fn check_files(
+        &self,
+        output: &PathBuf,
+        console: Console,
+    ) -> Result<Option<ExportBalls>, Error> {
         let further = [&self.picture, &self.export].into_iter().flatten();
-        let files = std::iter::once(&self.output).chain(further);
+        let files = std::iter::once(output).chain(further);
         check_outputs(files, &[&self.mesh], self.force, console)?;
         if let Some(path) = &self.picture {
             check_picture(path)?;
@@ -226,9 +245,10 @@ impl Sample {
         solid: &Solid,
         knots: &Knots,
         balls: &[Ball],
+        output: &PathBuf,
         export: Option<ExportBalls>,
     ) -> Result<Vec<String>, Error> {
-        let mut staged = vec![(write_table(knots, &self.output)?, &self.output)];
+        let mut staged = vec![(write_table(knots, output)?, output)];
         if let (Some(path), Some(export)) = (&self.export, export) {
             staged.push((export(knots, path)?, path));
         }
