@@ -17,6 +17,7 @@ use crate::solid_files::{check_picture, format_of, place_all, write_text};
 use knotdock::geometry::Bracket;
 use knotdock::geometry::ball_field::{BYTES_A_NODE, BallField, FieldGrid, Surface, surface};
 use knotdock::geometry::bracket::{shifted, volume};
+use knotdock::geometry::morphology::exact_volume::VolumeBounds;
 use knotdock::options::values::{AT_LEAST_ONE, in_range};
 use knotdock::output::files::whole_file::StagedFile;
 use knotdock::output::tables::fields::number;
@@ -126,35 +127,42 @@ impl SolidOutput {
         let mut staged: Vec<(StagedFile, &PathBuf)> = Vec::new();
         let wants_any =
             self.output.is_some() || self.surface.is_some() || self.volume_grid.is_some();
-        if balls.is_empty() && wants_any {
-            return Err(Error::machine("the result has no balls")
-                .help("sample on a finer --grid and --complement-grid, or write the other --set"));
+        if let Some(reason) = &result.empty
+            && self.volume_grid.is_some()
+        {
+            return Err(Error::input(format!(
+                "the result is empty: {reason}, so there is no box to lay a volume grid over"
+            ))
+            .help("leave out --volume-grid; -o and --surface write an empty result"));
+        }
+        if balls.is_empty() && wants_any && result.empty.is_none() {
+            return Err(Error::input("no ball is known to be inside the result")
+                .help("sample on a finer --grid and --complement-grid, or write --set outer"));
         }
         if let Some(path) = &self.output {
             let knots = match table {
                 Some(knots) => knots,
+                None if balls.is_empty() => Knots::default(),
                 None => knots(balls, solid.origin)?,
             };
             staged.push((write_table(&knots, path)?, path));
         }
-        if self.surface.is_some() || self.volume_grid.is_some() {
+        if let Some(path) = &self.surface {
+            let write = format_of("surface", path, &SURFACE_FORMATS)?;
+            let surface = surface_of(balls, solid.origin, self.cells)?;
+            staged.push((StagedFile::write(path, |file| write(&surface, file))?, path));
+        }
+        if let Some(path) = &self.volume_grid {
             let field = field(balls, self.cells)?;
-            if let Some(path) = &self.surface {
-                let write = format_of("surface", path, &SURFACE_FORMATS)?;
-                let surface = surface(&field, solid.origin);
-                staged.push((StagedFile::write(path, |file| write(&surface, file))?, path));
-            }
-            if let Some(path) = &self.volume_grid {
-                let write = format_of("volume-grid", path, &VOLUME_FORMATS)?;
-                let grid = VolumeGrid {
-                    origin: [0, 1, 2].map(|axis| solid.origin[axis] + field.grid.first[axis]),
-                    spacing: field.grid.spacing,
-                    shape: field.grid.shape,
-                    values: &field.depth,
-                    title: "knotdock: depth of a union of balls, above zero inside",
-                };
-                staged.push((StagedFile::write(path, |file| write(&grid, file))?, path));
-            }
+            let write = format_of("volume-grid", path, &VOLUME_FORMATS)?;
+            let grid = VolumeGrid {
+                origin: [0, 1, 2].map(|axis| solid.origin[axis] + field.grid.first[axis]),
+                spacing: field.grid.spacing,
+                shape: field.grid.shape,
+                values: &field.depth,
+                title: "knotdock: depth of a union of balls, above zero inside",
+            };
+            staged.push((StagedFile::write(path, |file| write(&grid, file))?, path));
         }
         if let Some(path) = &self.picture {
             staged.push((write_ball_picture(&solid.inner, &solid.outer, path)?, path));
@@ -170,14 +178,19 @@ impl SolidOutput {
 /// Cells along the longest edge of a surface that is looked at.
 const SHOWN_CELLS: usize = 64;
 
-/// The surface of balls, to look at; without balls it is empty.
+/// The surface of balls, to look at.
 pub fn shown_surface(balls: &[Ball], origin: [f64; 3]) -> Result<Surface, Error> {
+    surface_of(balls, origin, SHOWN_CELLS)
+}
+
+/// The surface of balls on a grid of `cells` cells; without balls it is empty.
+fn surface_of(balls: &[Ball], origin: [f64; 3], cells: usize) -> Result<Surface, Error> {
     match balls.is_empty() {
         true => Ok(Surface {
             positions: Vec::new(),
             triangles: Vec::new(),
         }),
-        false => Ok(surface(&field(balls, SHOWN_CELLS)?, origin)),
+        false => Ok(surface(&field(balls, cells)?, origin)),
     }
 }
 
@@ -202,20 +215,43 @@ pub struct SolidResult {
     pub solid: Bracket,
     pub inner_volume: (f64, f64),
     pub outer_volume: (f64, f64),
+    /// Bounds of the volume of the true result.
+    pub volume: VolumeBounds,
+    /// Why the result is empty, if that is proven.
+    pub empty: Option<String>,
 }
 
 impl SolidResult {
-    pub fn new(name: &'static str, solid: Bracket) -> Self {
+    /// The result between two sets of balls, whose volume is within `known` as well. `reason` says what an empty one
+    /// means.
+    pub fn new(
+        name: &'static str,
+        mut solid: Bracket,
+        known: VolumeBounds,
+        reason: String,
+    ) -> Self {
+        if known[1] <= 0.0 {
+            solid = Bracket {
+                inner: Vec::new(),
+                outer: Vec::new(),
+                epsilon: 0.0,
+                ..solid
+            };
+        }
         let inner_volume = volume(&solid.inner);
         let outer_volume = match solid.is_exact() {
             true => inner_volume,
             false => volume(&solid.outer),
         };
+        let least = (inner_volume.0 - inner_volume.1).max(known[0]).max(0.0);
+        let most = (outer_volume.0 + outer_volume.1).min(known[1]);
         Self {
             name,
-            solid,
             inner_volume,
             outer_volume,
+            volume: [least, most.max(least)],
+            empty: solid.outer.is_empty().then_some(reason),
+            solid,
         }
     }
 
@@ -224,8 +260,14 @@ impl SolidResult {
             format!("{} balls, volume {}", balls.len(), Figure(value))
         };
         let Self { name, solid, .. } = self;
+        if let Some(reason) = &self.empty {
+            console.say(format!("\n{name}: the result is empty: {reason}"));
+            return;
+        }
         console.say(format!(
-            "\n{name}:\n  inner: {}\n  outer: {}",
+            "\n{name}: volume between {} and {}\n  inner: {}\n  outer: {}",
+            Figure(self.volume[0]),
+            Figure(self.volume[1]),
             set(&solid.inner, self.inner_volume),
             set(&solid.outer, self.outer_volume)
         ));
@@ -244,6 +286,8 @@ impl SolidResult {
         let set = |balls: &[Ball], (value, error): (f64, f64)| json!({ "balls": balls.len(), "volume": value, "volume_error": error });
         let epsilon = self.solid.epsilon;
         json!({
+            "volume": { "least": self.volume[0], "most": self.volume[1] },
+            "empty": self.empty,
             "inner": set(&self.solid.inner, self.inner_volume),
             "outer": set(&self.solid.outer, self.outer_volume),
             "epsilon": epsilon.is_finite().then_some(epsilon),
@@ -263,6 +307,11 @@ impl SolidResult {
             title: self.name.to_owned(),
             sentences: vec![
                 "The result is between its inner balls, which are in it, and its outer balls, which hold it.".to_owned(),
+                format!(
+                    "Its volume is between {} and {}.",
+                    Figure(self.volume[0]),
+                    Figure(self.volume[1])
+                ),
                 match solid.epsilon.is_finite() {
                     true => format!("Either set is within {} of it.", Figure(solid.epsilon)),
                     false => "How far either set is from it is not known.".to_owned(),

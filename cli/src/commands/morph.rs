@@ -12,7 +12,11 @@ use crate::inputs::poses::pose_file;
 use crate::inputs::solids::{SolidArguments, SolidInput, describe_solids, read_solids};
 use crate::messages::console::Console;
 use knotdock::geometry::Bracket;
+use knotdock::geometry::bracket::volume;
 use knotdock::geometry::morphology::difference::difference;
+use knotdock::geometry::morphology::exact_volume::{
+    Copies, VolumeBounds, closed_volume, opened_volume,
+};
 use knotdock::geometry::morphology::products::{product, quotient};
 use knotdock::geometry::morphology::sweep::{SweepOptions, sample_count, sweep};
 use knotdock::geometry::morphology::{MorphologyOptions, closed, dilated, offset, opened};
@@ -27,7 +31,8 @@ use knotdock_structures::mesh::Figure;
 ///
 /// A solid is a mesh, a molecule or a file of balls. Inner balls are in the true result, outer balls hold it, and both
 /// volumes are reported. Shrinking, opening, closing, differences and quotients sample the complement by balls; a finer
-/// --complement-grid brings the two sets closer.
+/// --complement-grid brings the two sets closer. The volume of the true result has bounds of its own: of a closed mesh
+/// its exact depth gives closer ones than the balls. A result that is proven empty is an answer: the exit code is 0.
 #[derive(Args, Debug)]
 pub struct Morph {
     #[command(subcommand)]
@@ -110,7 +115,8 @@ struct Common {
     output: SolidOutput,
     #[command(flatten)]
     solids: SolidArguments,
-    /// Nodes of the grid on which complements are sampled by balls, as 2^15 or 32768.
+    /// Nodes of the grid on which complements are sampled by balls, as 2^15 or 32768; the more, the smaller are
+    /// the cells by which the depth of meshes bounds volumes.
     #[arg(
         long,
         value_name = "COUNT",
@@ -159,6 +165,23 @@ impl Operation {
     }
 }
 
+impl Operation {
+    /// What an empty result means.
+    fn emptiness(&self) -> String {
+        match self {
+            Self::Offset { distance, .. } => {
+                format!("the solid is thinner than {}", Figure(-2.0 * distance))
+            }
+            Self::Open(_) => "no copy of B fits into A".to_owned(),
+            Self::Difference(_) => "no translation keeps B inside A".to_owned(),
+            Self::Quotient(_) => "no point is in the solid in every pose".to_owned(),
+            Self::Close(_) | Self::Sum(_) | Self::Sweep { .. } | Self::Product(_) => {
+                "it has no points".to_owned()
+            }
+        }
+    }
+}
+
 impl Pair {
     fn solids(&self) -> Vec<&String> {
         vec![&self.first, &self.second]
@@ -202,7 +225,13 @@ impl Morph {
             &options,
             console,
         )?;
-        let result = SolidResult::new(request.name, solid);
+        let known = self.known_volume(
+            &inputs,
+            poses.as_deref().unwrap_or_default(),
+            &solid,
+            common,
+        );
+        let result = SolidResult::new(request.name, solid, known, self.operation.emptiness());
         result.describe(console);
         let files = common.output.write(&result, None)?;
         if !files.is_empty() {
@@ -215,6 +244,50 @@ impl Morph {
         object["poses"] = json!(poses.as_ref().map(Vec::len));
         object["files"] = json!(files);
         console.result(&object)
+    }
+
+    /// Bounds of the volume of a result, from the exact depth of meshes, or from A if that is none.
+    fn known_volume(
+        &self,
+        inputs: &[SolidInput],
+        poses: &[Pose],
+        result: &Bracket,
+        common: &Common,
+    ) -> VolumeBounds {
+        let per_axis = common.complement_grid.per_axis;
+        let (Some(a), Some(b)) = (inputs.first(), inputs.last()) else {
+            return [0.0, f64::INFINITY];
+        };
+        match (&self.operation, &a.mesh, &b.mesh) {
+            (Operation::Offset { distance, .. }, Some(mesh), _) => {
+                Copies::offset(mesh, *distance).volume(result, per_axis)
+            }
+            (Operation::Open(_), Some(mesh), _) => opened_volume(mesh, &b.solid, per_axis),
+            (Operation::Close(_), Some(mesh), _) => closed_volume(mesh, &b.solid, per_axis),
+            // The larger mesh is taken exactly, since the balls of the smaller one come closer to it.
+            (Operation::Sum(_), Some(mesh), other)
+                if other.is_none() || a.solid.epsilon() >= b.solid.epsilon() =>
+            {
+                Copies::sum(mesh, &b.solid, other.as_deref()).volume(result, per_axis)
+            }
+            (Operation::Sum(_), _, Some(mesh)) => {
+                Copies::sum(mesh, &a.solid, a.mesh.as_deref()).volume(result, per_axis)
+            }
+            (Operation::Difference(_), Some(mesh), _) => {
+                Copies::difference(mesh, &b.solid).volume(result, per_axis)
+            }
+            (Operation::Product(_), Some(mesh), _) => {
+                Copies::product(mesh, poses).volume(result, per_axis)
+            }
+            (Operation::Quotient(_), Some(mesh), _) => {
+                Copies::quotient(mesh, poses).volume(result, per_axis)
+            }
+            // These are no larger than A.
+            (Operation::Open(_) | Operation::Difference(_) | Operation::Quotient(_), None, _) => {
+                [0.0, volume(&a.solid.outer()).0]
+            }
+            _ => [0.0, f64::INFINITY],
+        }
     }
 
     fn result(

@@ -16,6 +16,7 @@ use crate::tables::report::text_table;
 use knotdock::geometry::Bracket;
 use knotdock::geometry::ball_field::{BallField, FieldGrid};
 use knotdock::geometry::gap::{GapWay, gap_ways};
+use knotdock::geometry::morphology::exact_volume::Copies;
 use knotdock::geometry::obstacle::regions::free_regions;
 use knotdock::geometry::obstacle::{mirrored, pair_sums, sum};
 use knotdock::options::values::{AT_LEAST_ONE, LENGTH, in_range};
@@ -104,28 +105,35 @@ impl Obstacle {
         describe_solids(&inputs, console);
         let [a, b] = [0, 1].map(|side| Bracket::from(&inputs[side].solid));
         room_for_balls(a.inner.len() as u64 * b.inner.len() as u64, allowed)?;
-        let inputs = json!({
+        let objects = json!({
             "a": inputs[0].object(),
             "b": inputs[1].object(),
             "offset": self.offset,
         });
         match self.rotations {
-            Some(count) => self.at_rotations(&a, &b, count, inputs, console),
-            None => self.at_rotation(&a, &b, &rotated, inputs, console),
+            Some(count) => self.at_rotations(&a, &b, count, objects, console),
+            None => {
+                let copies = inputs[0]
+                    .mesh
+                    .as_ref()
+                    .map(|mesh| Copies::obstacle(mesh, &inputs[1].solid, &rotated, self.offset));
+                self.at_rotation(&a, &b, &rotated, copies.as_ref(), objects, console)
+            }
         }
     }
 
-    /// Computes the obstacle at one rotation; `inputs` are part of the result.
+    /// Computes the obstacle at one rotation; `copies` of a mesh A bound its volume, `inputs` are part of the result.
     fn at_rotation(
         &self,
         a: &Bracket,
         b: &Bracket,
         rotation: &Pose,
+        copies: Option<&Copies<'_>>,
         inputs: Value,
         console: Console,
     ) -> Result<(), Error> {
         let mirror = mirrored(b, rotation);
-        let obstacle = self.obstacle(a, b, rotation);
+        let obstacle = self.obstacle(a, b, rotation, copies);
         let table = match (&self.output.output, self.reduce) {
             (Some(_), false) => {
                 let (first, second) = (self.output.chosen(a), self.output.chosen(&mirror));
@@ -158,7 +166,13 @@ impl Obstacle {
         console.result(&object)
     }
 
-    fn obstacle(&self, a: &Bracket, b: &Bracket, rotation: &Pose) -> RotatedObstacle {
+    fn obstacle(
+        &self,
+        a: &Bracket,
+        b: &Bracket,
+        rotation: &Pose,
+        copies: Option<&Copies<'_>>,
+    ) -> RotatedObstacle {
         let solid = sum(a, &mirrored(b, rotation), self.offset);
         let regions = |balls: &[Ball]| match FieldGrid::about(balls, self.output.cells) {
             // If nothing is blocked, all space is one region.
@@ -168,7 +182,13 @@ impl Obstacle {
                 free_regions(&BallField::new(&tree, grid), &tree).len()
             }
         };
-        let result = SolidResult::new("Obstacle", solid);
+        let known = copies.map(|copies| copies.volume(&solid, self.solids.grid.per_axis));
+        let result = SolidResult::new(
+            "Obstacle",
+            solid,
+            known.unwrap_or([0.0, f64::INFINITY]),
+            "the offset takes all radii to zero or below".to_owned(),
+        );
         let solid = &result.solid;
         RotatedObstacle {
             quaternion: rotation.quaternion(),
@@ -194,7 +214,7 @@ impl Obstacle {
                 rotation,
                 ..Pose::identity()
             };
-            self.obstacle(a, b, &pose)
+            self.obstacle(a, b, &pose, None)
         });
         let rows: Vec<RotatedObstacle> = rows.collect();
         if let Some(path) = &self.output.output {

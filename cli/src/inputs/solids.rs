@@ -1,6 +1,7 @@
 //! Solids named on the command line: a mesh, a molecule or a file of balls, as balls between which its surface lies.
 
 use std::path::Path;
+use std::sync::Arc;
 
 use clap::Args;
 use serde_json::{Value, json};
@@ -61,6 +62,8 @@ pub struct SolidInput {
     /// Kind of the file: mesh, molecule or balls.
     kind: &'static str,
     pub solid: BallSolid,
+    /// The mesh, if the solid is a closed one.
+    pub mesh: Option<Arc<Solid>>,
     sampling: Option<MeshSampling>,
 }
 
@@ -92,15 +95,18 @@ impl SolidInput {
             file,
             kind: "balls",
             solid,
+            mesh: None,
             sampling: None,
         })
     }
 
     fn of_mesh(spec: &InputSpec, per_axis: usize) -> Result<Self, Error> {
         let MeshInput {
-            mut file, solid, ..
+            mut file,
+            solid: mesh,
+            ..
         } = MeshInput::read(spec)?;
-        let (solid, sampling) = BallSolid::from_mesh(&solid, per_axis).map_err(|error| {
+        let (solid, sampling) = BallSolid::from_mesh(&mesh, per_axis).map_err(|error| {
             Error::input(error)
                 .at(&spec.path)
                 .help("check that the mesh is closed and one solid, or sample it on a finer --grid")
@@ -125,6 +131,7 @@ impl SolidInput {
             file,
             kind: "mesh",
             solid,
+            mesh: mesh.mesh().is_closed().then(|| Arc::new(mesh)),
             sampling: Some(sampling),
         })
     }
@@ -145,6 +152,7 @@ impl SolidInput {
             },
             kind: "molecule",
             solid,
+            mesh: None,
             sampling: None,
         })
     }

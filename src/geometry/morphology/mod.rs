@@ -12,10 +12,12 @@
 //!
 //! Sums and products of balls are balls. Differences and quotients, which the paper leaves open, go by duality: A - B is
 //! the complement of (complement of A) + (-B), and a quotient the complement of the product of the complement
-//! ([`complement`]). Every result is a [`Bracket`] about the true one.
+//! ([`complement`]). Every result is a [`Bracket`] about the true one. If A is a mesh, its exact depth bounds the volume
+//! closer than the balls do ([`exact_volume`]).
 
 pub mod complement;
 pub mod difference;
+pub mod exact_volume;
 pub mod held_cells;
 pub mod products;
 pub mod sweep;

@@ -195,6 +195,27 @@ impl Solid {
         }
     }
 
+    /// Bounds of the signed distance to the boundary of the solid, above zero inside. They are those of a closed mesh;
+    /// one of them is infinite if the nearest triangle is a wall within the solid or a sheet outside of it.
+    ///
+    /// No triangle is nearer than the nearest, so the boundary is at least as far. A point just beyond that triangle on
+    /// the other side of the boundary shows that it is no farther.
+    pub fn depth_bounds(&self, point: [f64; 3]) -> [f64; 2] {
+        let near = self.nearest(point);
+        let (least, is_inside) = (distance(near, point), self.is_inside(point));
+        let beyond = along(near, BEYOND / least, subtract(near, point));
+        let is_boundary = least > BEYOND && self.is_inside(beyond) != is_inside;
+        let most = if is_boundary {
+            least + BEYOND
+        } else {
+            f64::INFINITY
+        };
+        match is_inside {
+            true => [least, most],
+            false => [-most, -least],
+        }
+    }
+
     /// The nearest point of the surface.
     pub fn nearest(&self, point: [f64; 3]) -> [f64; 3] {
         let mut best = (f64::INFINITY, [f64::NAN; 3]);
@@ -204,6 +225,9 @@ impl Solid {
 }
 
 const LEAF: usize = 4;
+
+/// Length beyond the nearest triangle of the point that shows it to be boundary.
+const BEYOND: f64 = 1e-7;
 
 impl Solid {
     /// Finds the nearest point below a node, if its squared distance is less than that in `best`.
