@@ -293,6 +293,8 @@ fn directions() -> Vec<Vector3<f64>> {
 
 /// About the most balls that an opening or closing is known by.
 const MAX_BALLS: usize = 1 << 15;
+/// So many times more, and nothing is said of its volume.
+const TOO_MANY: usize = 32;
 
 /// Bounds of the volume of the opening of A by B.
 pub fn opened_volume(a: &Solid, b: &BallSolid, per_axis: usize) -> VolumeBounds {
@@ -307,9 +309,12 @@ pub fn opened_volume(a: &Solid, b: &BallSolid, per_axis: usize) -> VolumeBounds 
         ..cube
     };
     let copies = Copies::difference(a, b);
-    let [inner, outer] = both(&around, b, 1.0, per_axis, |cube, budget| {
+    let found = both(&around, b, 1.0, per_axis, |cube, budget| {
         copies.cells(cube, budget)
     });
+    let Some([inner, outer]) = found else {
+        return [0.0, f64::INFINITY];
+    };
     let unit = a.frame().unit;
     let field = |cell: &Cube, _: &[Candidate], _: bool| {
         let reach = cell.reach();
@@ -337,13 +342,16 @@ pub fn closed_volume(a: &Solid, b: &BallSolid, per_axis: usize) -> VolumeBounds 
         ..cube
     };
     let copies = Copies::sum(a, b, None);
-    let [inner, outer] = both(&around, b, -1.0, per_axis, |cube, budget| {
+    let found = both(&around, b, -1.0, per_axis, |cube, budget| {
         let field = |cell: &Cube, candidates: &[Candidate], is_finest: bool| {
             let (bounds, kept) = copies.bounds(cell, candidates, is_finest);
             ([-bounds[1], -bounds[0]], kept)
         };
         explored(cube, &copies.all(), budget, &field)
     });
+    let Some([inner, outer]) = found else {
+        return [0.0, f64::INFINITY];
+    };
     let unit = a.frame().unit;
     let field = |cell: &Cube, _: &[Candidate], _: bool| {
         let [depth, _] = a.depth_bounds(cell.center.map(|part| part / unit));
@@ -363,11 +371,14 @@ fn both(
     sign: f64,
     per_axis: usize,
     cells: impl Fn(&Cube, usize) -> Vec<Cell>,
-) -> [BallTree; 2] {
+) -> Option<[BallTree; 2]> {
     let found = cells(
         cube,
         budget(per_axis).min(MAX_BALLS / b.inner().len().max(1)),
     );
+    if found.len() * b.inner().len() > TOO_MANY * MAX_BALLS {
+        return None;
+    }
     let sums = |radius: &dyn Fn(&Cell) -> Option<f64>| -> BallTree {
         let balls = found.iter().filter_map(|cell| Some((cell, radius(cell)?)));
         let balls: Vec<Ball> = balls
@@ -380,7 +391,7 @@ fn both(
             .collect();
         BallTree::new(&balls)
     };
-    [
+    Some([
         sums(&|cell| {
             // Farther away copies may decide that do not in the cell.
             let most = match b.inner().len() {
@@ -390,7 +401,7 @@ fn both(
             (cell.bounds[0] >= 0.0).then_some(cell.bounds[0].min(most))
         }),
         sums(&|cell| Some(cell.cube.reach() + b.epsilon())),
-    ]
+    ])
 }
 
 /// About the most open cells, which grow as an area does: 256 for each square of a grid of `per_axis` nodes an axis.
