@@ -1,5 +1,6 @@
 //! `knotdock obstacle`, `morph` and `se3` from the command line.
 
+mod bounds;
 mod files;
 mod refusals;
 

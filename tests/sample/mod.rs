@@ -1,6 +1,7 @@
 //! `knotdock sample` as its users see it: files, JSON, refusals.
 
 mod refused;
+mod robot;
 
 use std::fs;
 use std::path::{Path, PathBuf};
