@@ -66,6 +66,14 @@ impl ExactSum {
         }
     }
 
+    /// Shape's score at one pose without the low-pass.
+    pub fn unfiltered(&self, pose: &Pose) -> f64 {
+        match self {
+            Self::Lifted(scorer) => scorer.unfiltered(pose),
+            Self::Product(scorer) => scorer.unfiltered(pose),
+        }
+    }
+
     /// Score and terms of one pose with the parts of shape.
     pub fn score(&self, pose: &Pose) -> ExactScore {
         match self {

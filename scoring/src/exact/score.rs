@@ -51,13 +51,20 @@ impl ExactScorer {
                 #[inline(always)]
                 |index| scorer.tables.slices.get(index),
             );
-            let weights = scorer.kernel.options().slice_weights();
-            let unfiltered = scorer.unfiltered_slices(simd, pose);
             ShapeParts {
                 slices,
-                unfiltered: weighted(weights, unfiltered),
+                unfiltered: scorer.unfiltered_with(simd, pose),
             }
         })
+    }
+
+    /// G of B&I's own kernel at one pose.
+    pub fn unfiltered(&self, pose: &Pose) -> f64 {
+        let scorer = self;
+        with_simd!(
+            <'a>(scorer: &'a ExactScorer, pose: &'a Pose) -> f64,
+            |simd| scorer.unfiltered_with(simd, pose)
+        )
     }
 
     /// Score and terms of one pose with the parts of shape. Shape's term is the weighted sum of the slices to the last
@@ -164,9 +171,9 @@ impl ExactScorer {
         })
     }
 
-    /// Slices of B&I's own kernel, evaluated directly.
+    /// G of B&I's own kernel, evaluated directly.
     #[inline(always)]
-    fn unfiltered_slices<S: Simd>(&self, simd: S, pose: &Pose) -> [f64; 3] {
+    fn unfiltered_with<S: Simd>(&self, simd: S, pose: &Pose) -> f64 {
         let (rotation, center) = self.placed(pose);
         let cone = self.kernel.cone();
         let offsets = self.kernel.options().slice_offsets();
@@ -210,7 +217,7 @@ impl ExactScorer {
                 *total += knot.weight * sum;
             }
         }
-        totals
+        weighted(self.kernel.options().slice_weights(), totals)
     }
 }
 

@@ -42,14 +42,21 @@ impl<const LANES: usize> Table<LANES> {
         self.end
     }
 
+    /// Coefficients [power][lane] of the panel that has x >= 0, and the argument of its polynomials; `None` beyond the
+    /// end.
+    #[inline(always)]
+    pub(crate) fn panel(&self, x: f64) -> Option<(&[[f64; LANES]; TERMS], f64)> {
+        let scaled = x * self.panels_per_unit;
+        let panel = self.coefficients.get(scaled as usize)?;
+        Some((panel, 2.0 * (scaled - (scaled as usize) as f64) - 1.0))
+    }
+
     /// All lanes at x >= 0.
     #[inline(always)]
     pub fn value(&self, x: f64) -> [f64; LANES] {
-        let scaled = x * self.panels_per_unit;
-        let Some(panel) = self.coefficients.get(scaled as usize) else {
+        let Some((panel, u)) = self.panel(x) else {
             return [0.0; LANES];
         };
-        let u = 2.0 * (scaled - (scaled as usize) as f64) - 1.0;
         let mut sum = panel[TERMS - 1];
         for power in (0..TERMS - 1).rev() {
             for lane in 0..LANES {
@@ -61,12 +68,10 @@ impl<const LANES: usize> Table<LANES> {
 
     /// All lanes at x >= 0, and their slopes.
     pub fn value_and_slope(&self, x: f64) -> ([f64; LANES], [f64; LANES]) {
-        let scaled = x * self.panels_per_unit;
         let (mut sum, mut slope) = ([0.0; LANES], [0.0; LANES]);
-        let Some(panel) = self.coefficients.get(scaled as usize) else {
+        let Some((panel, u)) = self.panel(x) else {
             return (sum, slope);
         };
-        let u = 2.0 * (scaled - (scaled as usize) as f64) - 1.0;
         for terms in panel.iter().rev() {
             for lane in 0..LANES {
                 slope[lane] = slope[lane] * u + sum[lane];
