@@ -9,16 +9,18 @@ use crate::inputs::native::measure;
 use crate::inputs::request::KnownComplex;
 use crate::messages::console::Console;
 use crate::messages::dock::{
-    cost_text, error_warning, next_text, outcome_text, restraints_warning, timings_text,
+    cost_text, error_warning, gaps_text, next_text, outcome_text, restraints_warning, timings_text,
 };
 use crate::report::{MAX_ROWS, RunReport, Viewer};
 use crate::shards::WIDE_COLUMNS;
 use crate::tables::batch_results::RunSummary;
 use crate::tables::report::{BEST, best_clusters, counted, firsts};
 use crate::tradeoff::choice::MIN_ROTATIONS;
+use knotdock::dock::gaps::dock_at_gaps;
 use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::PreparedPair;
 use knotdock::dock::run::dock_until;
+use knotdock::options::DockOptions;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::RUN;
 use knotdock::output::files::seal::REPORT;
@@ -40,11 +42,39 @@ impl Docking {
     /// Docks, and writes nothing.
     pub fn dock(mut self, console: Console) -> Result<Docked, Error> {
         let progress = console.progress();
-        let PreparedPair { plan, points, .. } = &self.prepared;
-        let outcome = dock_until(plan, points, self.deadline, &progress)?;
+        let outcome = match self.closer.take() {
+            Some(closer) => self.dock_at_gaps(closer, console)?,
+            None => {
+                let PreparedPair { plan, points, .. } = &self.prepared;
+                dock_until(plan, points, self.deadline, &progress)?
+            }
+        };
         // The record says where the search stopped, so that it can be repeated.
         self.request.options.stopped = outcome.stopped;
         Ok(Docked::new(self, outcome))
+    }
+
+    /// Docks solids at this gap and the closer one, and keeps the better one.
+    fn dock_at_gaps(
+        &mut self,
+        (options, closer): (DockOptions, PreparedPair),
+        console: Console,
+    ) -> Result<DockOutcome, Error> {
+        let Some(solids) = self.request.bodies.solids() else {
+            return Err(
+                Error::input("the gap between files of balls is not searched")
+                    .help("give the gap as --offset"),
+            );
+        };
+        let pairs = [&self.prepared, &closer];
+        let docked = dock_at_gaps(pairs, solids, &console.progress())?;
+        if docked.gap == 1 {
+            self.request.options = options;
+            self.prepared = closer;
+        }
+        console.say(gaps_text(&docked));
+        self.chosen.get_or_insert_default().gaps = Some(docked.gaps);
+        Ok(docked.outcome)
     }
 }
 

@@ -6,7 +6,7 @@ use std::time::Instant;
 use crate::records::recorded_run::RecordedRun;
 use crate::tradeoff::choice::{RunTarget, choose};
 use knotdock::dock::pair::{PreparedPair, Preparer};
-use knotdock::options::{Precision, SharpChoice};
+use knotdock::options::{DockOptions, Precision, SharpChoice};
 use knotdock::output::files::staging::put_back;
 use knotdock::output::records::manifest::Chosen;
 use knotdock::output::run_folder::Clock;
@@ -14,8 +14,7 @@ use knotdock::output::run_folder::Clock;
 use crate::inputs::native::NativeFiles;
 use crate::inputs::request::{KnownComplex, Request};
 use crate::messages::console::Console;
-use crate::messages::dock::{assumed, regions_text};
-use crate::messages::dock::{expected_text, score_text};
+use crate::messages::dock::{assumed, closer_gap_text, expected_text, regions_text, score_text};
 use knotdock_structures::Error;
 
 /// A run that is ready to go.
@@ -28,6 +27,8 @@ pub struct Docking {
     pub(super) force: bool,
     pub(super) known: Option<KnownComplex>,
     pub(super) prepared: PreparedPair,
+    /// The closer gap, if the gap between meshes is searched.
+    pub(super) closer: Option<(DockOptions, PreparedPair)>,
     pub(super) chosen: Option<Chosen>,
     /// End of the budget, if the run has one.
     pub(super) deadline: Option<Instant>,
@@ -49,13 +50,14 @@ impl Docking {
         }
         request.bodies.describe(arrangement, console);
         let known = request.known(console)?;
-        let (prepared, chosen, deadline) = if wanted == RunTarget::default() {
+        let (mut prepared, chosen, deadline) = if wanted == RunTarget::default() {
             (request.plan(console)?, None, None)
         } else {
             let (prepared, chosen) = plan_within(wanted, &mut request, console)?;
             let end = wanted.budget.and_then(|budget| clock.after(budget));
             (prepared, Some(chosen), end)
         };
+        let closer = request.closer_gap(&mut prepared)?;
         let plan = &prepared.plan;
         let sides = arrangement.sides();
         console.detail(format!("\n{plan}"));
@@ -77,6 +79,9 @@ impl Docking {
         }
         console.say(score_text(plan, sides));
         console.say(expected_text(plan, chosen.as_ref(), request.is_angle));
+        if let Some((options, _)) = &closer {
+            console.say(closer_gap_text(options.kernel.offset));
+        }
         Ok(Self {
             request,
             shown: directory.clone(),
@@ -84,6 +89,7 @@ impl Docking {
             force,
             known,
             prepared,
+            closer,
             chosen,
             deadline,
             clock,
@@ -92,13 +98,16 @@ impl Docking {
 
     /// Memory that the run is expected to take, in bytes.
     pub fn memory_bytes(&self) -> u64 {
-        self.prepared.plan.memory_bytes()
+        let closer = self.closer.iter().map(|(_, closer)| closer);
+        let bytes = closer.map(|closer| closer.plan.memory_bytes());
+        bytes.fold(self.prepared.plan.memory_bytes(), u64::max)
     }
 
     /// Seconds that the search is expected to take on this machine.
     pub fn expected_seconds(&self) -> f64 {
-        let plan = &self.prepared.plan;
-        plan.search_seconds(plan.rotations)
+        let closer = self.closer.iter().map(|(_, closer)| closer);
+        let plans = closer.chain([&self.prepared]).map(|pair| &pair.plan);
+        plans.map(|plan| plan.search_seconds(plan.rotations)).sum()
     }
 
     /// The directory of the run, if it holds another run that is not to be replaced.
@@ -123,9 +132,11 @@ impl Docking {
             options.stopped = run.options.stopped;
         }
         let inputs = self.request.bodies.records();
+        let closer = self.closer.iter().map(|(options, _)| options);
         self.directory.join("poses.csv").is_file()
             && run.is_of_this_program()
-            && run.is_same_request(inputs, native.as_ref(), &options)
+            && (closer.chain([&options]))
+                .any(|options| run.is_same_request(inputs, native.as_ref(), options))
     }
 }
 
@@ -149,14 +160,20 @@ fn plan_within(
         request.options.ranking.sharp = SharpChoice::Off;
     }
     let rotations = request.options.search.rotations;
-    // A first plan fills in the lengths of meshes; its rotations are not used.
+    // A first plan fills in the defaults of meshes; its rotations are not used.
     request.options.search.rotations = 4;
+    // The clock ends the search of an even set.
+    request.given.defaults.rotations |= wanted.budget.is_some();
+    request.given.fixes_gap |= wanted.budget.is_some();
     let first = request.plan(console)?;
     request.options.search.rotations = rotations;
     let options = &mut request.options;
     let mut preparer = Preparer::new(request.bodies.pair(), options, &first);
     let chosen = choose(wanted, options, &mut preparer)?;
-    let prepared = preparer.prepare(options)?;
+    let prepared = PreparedPair {
+        closer: first.closer,
+        ..preparer.prepare(options)?
+    };
     let error = chosen
         .predicted_error
         .map(|error| format!(" and an error of {error:.1e} of the best score"));

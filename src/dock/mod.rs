@@ -2,6 +2,7 @@
 
 mod effect_costs;
 pub mod effect_decisions;
+pub mod gaps;
 pub mod memory;
 pub mod outcome;
 pub mod pair;

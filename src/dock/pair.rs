@@ -10,7 +10,7 @@ use crate::dock::run::molecule_points;
 use crate::dock::scene::Scene;
 use crate::dock::stopwatch::timed;
 use crate::mesh::samplers::RESOLUTION;
-use crate::mesh::{CLUSTER_RADIUS, MeshOptions, MeshPair, MeshSceneError, Shape, sample_pair};
+use crate::mesh::{CLUSTER_RADIUS, MeshOptions, MeshPair, MeshSceneError, Shape, sample_gaps};
 use crate::options::DockOptions;
 use knotdock_structures::Error;
 
@@ -38,8 +38,27 @@ impl Sampling {
     /// # Errors
     /// [`MeshSceneError`].
     pub fn of(shapes: [Shape; 2], options: &MeshOptions) -> Result<Self, MeshSceneError> {
-        let (pair, time) = timed("sample", || sample_pair(shapes, options));
-        Ok(Self { pair: pair?, time })
+        Ok(Self::of_gaps(shapes, options, None)?.0)
+    }
+
+    /// Samples two meshes, and for a closer gap too, as [`sample_gaps`] does. All time is the first one's.
+    ///
+    /// # Errors
+    /// [`MeshSceneError`].
+    pub fn of_gaps(
+        shapes: [Shape; 2],
+        options: &MeshOptions,
+        share: Option<f64>,
+    ) -> Result<(Self, Option<Self>), MeshSceneError> {
+        let (pairs, time) = timed("sample", || sample_gaps(shapes, options, share));
+        let (pair, closer) = pairs?;
+        let none = StageTime {
+            wall_seconds: 0.0,
+            cpu_seconds: time.cpu_seconds.map(|_| 0.0),
+            ..time
+        };
+        let closer = closer.map(|pair| Self { pair, time: none });
+        Ok((Self { pair, time }, closer))
     }
 }
 
@@ -51,6 +70,8 @@ pub struct PreparedPair {
     pub points: Vec<[f64; 3]>,
     /// Report on the sampling of the meshes.
     pub sampling: Option<Arc<Sampling>>,
+    /// Sampling for a closer gap, if the gap is searched.
+    pub closer: Option<Sampling>,
     /// What sampling (of meshes) and planning took.
     pub timing: Vec<StageTime>,
 }
@@ -69,6 +90,7 @@ impl PreparedPair {
             plan: planned?,
             points: molecule_points(ligand),
             sampling: None,
+            closer: None,
             timing: vec![time],
         })
     }
@@ -87,6 +109,7 @@ impl PreparedPair {
             points: sampling.pair.parts[1].knots.centers.clone(),
             timing: vec![sampling.time, time],
             sampling: Some(sampling),
+            closer: None,
         })
     }
 }
@@ -156,19 +179,25 @@ impl<'a> Preparer<'a> {
     }
 }
 
-/// Which options that follow from the sampling were given, beside the offset.
+/// Which options with defaults of their own for meshes were given, beside the offset.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub struct GivenLengths {
+pub struct GivenDefaults {
     /// The resolution.
     pub resolution: bool,
     /// The radius of clusters.
     pub cluster_radius: bool,
     /// The exponent of the bump function.
     pub alpha: bool,
+    /// Any of the rotations, the finer ones and their share.
+    pub rotations: bool,
 }
 
-/// The defaults of options that follow from the sampling of meshes, if they were not given.
-pub fn sampled_defaults(meshes: &MeshPair, options: &mut DockOptions, given: GivenLengths) {
+/// Finer rotations of meshes, about 7 degrees apart, and the share of them that is searched: joints are deeper than
+/// molecules' (docs/method/mesh_docking.md has what they find).
+const FINE_ROTATIONS: (usize, f64) = (30_000, 0.2);
+
+/// The defaults for meshes of options that were not given.
+pub fn sampled_defaults(meshes: &MeshPair, options: &mut DockOptions, given: GivenDefaults) {
     options.kernel.offset = meshes.offset;
     if !given.alpha {
         options.kernel.alpha = meshes.sampler.alpha();
@@ -178,5 +207,10 @@ pub fn sampled_defaults(meshes: &MeshPair, options: &mut DockOptions, given: Giv
     }
     if !given.cluster_radius {
         options.ranking.cluster_radius = CLUSTER_RADIUS * meshes.offset;
+    }
+    if !given.rotations {
+        let (finer, share) = FINE_ROTATIONS;
+        options.search.fine_rotations = Some(finer);
+        options.search.fine_share = share;
     }
 }

@@ -1,7 +1,7 @@
 //! The run: prepare, scan the rotations, refine the best peaks, check the fast path, rescore, cluster, score exactly.
 
 use crate::dock::effect_costs::{components_by_effect, effect_costs, rank_of};
-use crate::dock::outcome::{DockOutcome, MeasuredError, SharpOutcome, error_scale};
+use crate::dock::outcome::{DockOutcome, MeasuredError, SharpOutcome, StageTime, error_scale};
 use crate::dock::plan::DockPlan;
 use crate::dock::stopwatch::Stopwatch;
 use crate::error::no_pose;
@@ -17,7 +17,7 @@ use crate::rank::time_left::{poses_in_time, rescoring_seconds};
 use crate::search::coarse_to_fine::{FineSearched, search_finer};
 use crate::search::deadline::{Deadline, left};
 use crate::search::scan::{Scanned, scan};
-use crate::search::scan_engine::ScanEngine;
+use crate::search::scan_engine::{Adapter, ScanEngine};
 use crate::search::schedule::schedule;
 use crate::threads;
 use knotdock_scoring::engine::{ChosenRank, ReceptorSpectra};
@@ -74,107 +74,198 @@ pub fn dock_until(
     progress: &dyn Progress,
 ) -> Result<DockOutcome, Error> {
     threads::on(plan.in_flight(), || {
-        dock_on_threads(plan, points, deadline, progress)
+        let mut searched = Searched::new(plan, points, deadline, progress)?;
+        searched.refine(usize::MAX, progress)?;
+        searched.ranked(deadline, progress)
     })?
 }
 
-/// The run on the threads of the current pool.
-fn dock_on_threads(
-    plan: &DockPlan,
-    points: &[[f64; 3]],
-    deadline: Option<Instant>,
-    progress: &dyn Progress,
-) -> Result<DockOutcome, Error> {
-    let mut clock = Stopwatch::start();
-    let Prepared {
-        spectra,
-        engine,
-        scorer,
-        rank_error,
-        components,
-    } = Prepared::new(plan, progress)?;
-    let rescorer = plan.rescorer();
-    let body = RigidBody::new(points).with_equivalents(plan.search.space.equivalents());
-    let scorers = (&scorer, rescorer.as_ref());
-    let search_end = deadline.map(|end| search_deadline(plan, &engine, end, scorers, &body));
-    let search_end = search_end.transpose()?;
-    // The rotations that are searched to measure are no part of the search's time.
-    clock.lap("prepare");
-    let mut found = find(plan, &engine, search_end.as_ref(), (progress, &mut clock))?;
-    let grid_pose = |peak| engine.grid_pose(&plan.search, peak);
-    let mut grid_poses: Vec<Pose> = found.peaks.iter().map(grid_pose).collect();
-    // The engine goes before the potentials come, which may take ten times its memory.
-    let (rank, adapter) = (engine.cpu.rank(), engine.adapter.clone());
-    drop(engine);
-    let refined = refine(plan, spectra, (&found.peaks, &grid_poses), &body, progress);
-    clock.lap("refine");
+/// A run after its search: poses that are not yet ranked.
+pub(super) struct Searched<'a> {
+    plan: &'a DockPlan,
+    scorer: ExactSum,
+    rescorer: Option<Rescorer>,
+    body: RigidBody,
+    found: SearchResult,
+    /// Poses of the peaks.
+    grid_poses: Vec<Pose>,
+    /// What refines them; `None` if none is refined.
+    field: Option<PotentialGrid>,
+    /// The first poses, refined.
+    refined: Vec<RefinedPose>,
+    rank: usize,
+    rank_error: f64,
+    components: [f64; Effect::ALL.len()],
+    adapter: Option<Adapter>,
+    clock: Stopwatch,
+}
 
-    grid_poses.truncate(ERROR_POSES);
-    grid_poses.shrink_to_fit();
-    progress.go_on()?;
-    let check = Check::new(&scorer, &grid_poses);
-    clock.lap("check");
-
-    let poses = (&found.peaks[..], &refined[..]);
-    let kept = kept(plan, deadline, poses, rescorer.as_ref(), (&check, &body));
-    let stopped = found.stopped(plan, kept);
-    let poses = (&found.peaks[..kept], &refined[..kept]);
-    let mut candidates = rescore(plan, poses, &check, rescorer.as_ref(), progress);
-    progress.go_on()?;
-    drop(refined);
-    found.peaks.truncate(ERROR_POSES);
-    found.peaks.shrink_to_fit();
-    clock.lap("rescore");
-    let sharp = sharpen(plan, &mut candidates, &body, scorers, progress);
-    if sharp.is_some() {
-        clock.lap("sharp");
+impl<'a> Searched<'a> {
+    /// Searches, on the threads of the current pool.
+    pub fn new(
+        plan: &'a DockPlan,
+        points: &[[f64; 3]],
+        deadline: Option<Instant>,
+        progress: &dyn Progress,
+    ) -> Result<Self, Error> {
+        let mut clock = Stopwatch::start();
+        let Prepared {
+            spectra,
+            engine,
+            scorer,
+            rank_error,
+            components,
+        } = Prepared::new(plan, progress)?;
+        let rescorer = plan.rescorer();
+        let body = RigidBody::new(points).with_equivalents(plan.search.space.equivalents());
+        let scorers = (&scorer, rescorer.as_ref());
+        let search_end = deadline.map(|end| search_deadline(plan, &engine, end, scorers, &body));
+        let search_end = search_end.transpose()?;
+        // The rotations that are searched to measure are no part of the search's time.
+        clock.lap("prepare");
+        let found = find(plan, &engine, search_end.as_ref(), (progress, &mut clock))?;
+        let grid_pose = |peak| engine.grid_pose(&plan.search, peak);
+        let grid_poses: Vec<Pose> = found.peaks.iter().map(grid_pose).collect();
+        // The engine goes before the potentials come, which may take ten times its memory.
+        let (rank, adapter) = (engine.cpu.rank(), engine.adapter.clone());
+        drop(engine);
+        let field =
+            spectra.map(|spectra| PotentialGrid::new(&plan.search.engine, &spectra, &plan.ligand));
+        Ok(Self {
+            plan,
+            scorer,
+            rescorer,
+            body,
+            found,
+            grid_poses,
+            field,
+            refined: Vec::new(),
+            rank,
+            rank_error,
+            components,
+            adapter,
+            clock,
+        })
     }
-    progress.go_on()?;
-    merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
-    let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
-    // Poses closer than neighbouring samples of the search are one place to it.
-    let step = body.step(plan.spacing, plan.search.rotation_step());
-    let distinct = deduplicated(&candidates, &clusters, &body, step);
-    clock.lap("cluster");
 
-    let best_peak = found.peaks.first().map_or(0.0, |peak| peak.score);
-    let on = Effect::ALL.map(|effect| plan.is_on(effect));
-    let pose_scorer = PoseScorer {
-        scorer: &scorer,
-        rescorer: rescorer.as_ref(),
-        on,
-        space: &plan.search.space,
-        cluster_temperature: plan.unit.cluster_temperature(),
-        diagnostics: plan.options.output.diagnostics,
-    };
-    let ranking = report(
-        pose_scorer,
-        &candidates,
-        (&clusters, &distinct),
-        plan.options.ranking.no_cluster,
-        2.0 * plan.options.kernel.tolerance * best_peak.abs(),
-        progress,
-    );
-    let error = check.error(plan, &found.peaks, &ranking);
-    clock.lap("score");
-    let timing = clock.into_stages();
-    let searched = (found.searched, adapter.is_some());
+    /// Refines the first `count` poses, or as many as the plan does, but for those that are refined already.
+    pub fn refine(&mut self, count: usize, progress: &dyn Progress) -> Result<(), Error> {
+        let (done, end) = (self.refined.len(), count.min(self.grid_poses.len()));
+        let poses = (&self.found.peaks[done..end], &self.grid_poses[done..end]);
+        let wanted = self.plan.refined().saturating_sub(done);
+        let field = self.field.as_ref();
+        let refined = refine(self.plan, field, (poses, wanted), &self.body, progress);
+        self.refined.extend(refined);
+        self.clock.lap("refine");
+        Ok(progress.go_on()?)
+    }
 
-    Ok(DockOutcome {
-        poses: ranking.poses,
-        poses_kept: candidates.len(),
-        clusters: ranking.clusters,
-        searched: found.searched,
-        stopped,
-        error,
-        rank_error,
-        rank,
-        effects: effect_costs(plan, &components, searched, &timing),
-        sharp,
-        fine: found.fine,
-        timing,
-        adapter,
-    })
+    /// The best refined pose by the fast path.
+    pub fn best(&self) -> Option<&Pose> {
+        let poses = self.refined.iter();
+        let best = poses.max_by(|a, b| a.score.total_cmp(&b.score));
+        best.map(|refined| &refined.pose)
+    }
+
+    /// Leaves the time since the search out of the stages.
+    pub fn resume(&mut self) {
+        self.clock.resume();
+    }
+
+    /// The stages so far.
+    pub fn into_stages(self) -> Vec<StageTime> {
+        self.clock.into_stages()
+    }
+
+    /// Checks the fast path, rescores, clusters and scores exactly, once all poses went through [`Self::refine`].
+    pub fn ranked(
+        self,
+        deadline: Option<Instant>,
+        progress: &dyn Progress,
+    ) -> Result<DockOutcome, Error> {
+        let Self {
+            plan,
+            scorer,
+            rescorer,
+            body,
+            mut found,
+            mut grid_poses,
+            field,
+            refined,
+            rank,
+            rank_error,
+            components,
+            adapter,
+            mut clock,
+        } = self;
+        let scorers = (&scorer, rescorer.as_ref());
+        drop(field);
+        grid_poses.truncate(ERROR_POSES);
+        grid_poses.shrink_to_fit();
+        let check = Check::new(&scorer, &grid_poses);
+        clock.lap("check");
+
+        let poses = (&found.peaks[..], &refined[..]);
+        let kept = kept(plan, deadline, poses, rescorer.as_ref(), (&check, &body));
+        let stopped = found.stopped(plan, kept);
+        let poses = (&found.peaks[..kept], &refined[..kept]);
+        let mut candidates = rescore(plan, poses, &check, rescorer.as_ref(), progress);
+        progress.go_on()?;
+        drop(refined);
+        found.peaks.truncate(ERROR_POSES);
+        found.peaks.shrink_to_fit();
+        clock.lap("rescore");
+        let sharp = sharpen(plan, &mut candidates, &body, scorers, progress);
+        if sharp.is_some() {
+            clock.lap("sharp");
+        }
+        progress.go_on()?;
+        merge(&mut candidates, &body, MERGE_SPACINGS * plan.spacing);
+        let clusters = clusters_of(&candidates, &body, plan.options.ranking.cluster_radius);
+        // Poses closer than neighbouring samples of the search are one place to it.
+        let step = body.step(plan.spacing, plan.search.rotation_step());
+        let distinct = deduplicated(&candidates, &clusters, &body, step);
+        clock.lap("cluster");
+
+        let best_peak = found.peaks.first().map_or(0.0, |peak| peak.score);
+        let on = Effect::ALL.map(|effect| plan.is_on(effect));
+        let pose_scorer = PoseScorer {
+            scorer: &scorer,
+            rescorer: rescorer.as_ref(),
+            on,
+            space: &plan.search.space,
+            cluster_temperature: plan.unit.cluster_temperature(),
+            diagnostics: plan.options.output.diagnostics,
+        };
+        let ranking = report(
+            pose_scorer,
+            &candidates,
+            (&clusters, &distinct),
+            plan.options.ranking.no_cluster,
+            2.0 * plan.options.kernel.tolerance * best_peak.abs(),
+            progress,
+        );
+        let error = check.error(plan, &found.peaks, &ranking);
+        clock.lap("score");
+        let timing = clock.into_stages();
+        let searched = (found.searched, adapter.is_some());
+
+        Ok(DockOutcome {
+            poses: ranking.poses,
+            poses_kept: candidates.len(),
+            clusters: ranking.clusters,
+            searched: found.searched,
+            stopped,
+            error,
+            rank_error,
+            rank,
+            effects: effect_costs(plan, &components, searched, &timing),
+            sharp,
+            fine: found.fine,
+            timing,
+            adapter,
+        })
+    }
 }
 
 /// Prepared engine, spectra and scorer of a run.
@@ -265,7 +356,7 @@ fn search_deadline(
     peaks.truncate(ERROR_POSES);
     let grid_poses = peaks.iter().map(|peak| engine.grid_pose(search, peak));
     let grid_poses: Vec<Pose> = grid_poses.collect();
-    let placed = refine(plan, None, (&peaks, &grid_poses), body, &NoProgress);
+    let placed = refine(plan, None, ((&peaks, &grid_poses), 0), body, &NoProgress);
     let rescoring = rescoring_seconds((&peaks, &placed), rescorer);
     let exact = match &grid_poses[..] {
         [] => 0.0,
@@ -294,10 +385,15 @@ fn find(
     let groups = schedule(search, deadline.is_some());
     let wanted: usize = groups.iter().map(RotationGroup::count).sum();
     progress.stage("search", wanted as u64);
+    // Finer rotations are about as many of the best as their share takes, however few poses are kept.
+    let kept = match search.rotations.fine.is_empty() {
+        true => search.kept,
+        false => usize::MAX,
+    };
     let Scanned {
         mut peaks,
         rotations: searched,
-    } = scan(search, engine, &groups, search.kept, deadline, progress)?;
+    } = scan(search, engine, &groups, kept, deadline, progress)?;
     clock.lap("search");
     if peaks.is_empty() {
         let restraints = &plan.restraints.distances;
@@ -330,21 +426,18 @@ fn find(
     })
 }
 
-/// Refines the best grid poses, of rings all. Poses are rounded to their printed digits before they are scored, so that
+/// Refines the first `count` poses. Poses are rounded to their printed digits before they are scored, so that
 /// the table's rows give back the same scores.
 fn refine(
     plan: &DockPlan,
-    spectra: Option<ReceptorSpectra>,
-    (peaks, grid_poses): (&[Peak], &[Pose]),
+    field: Option<&PotentialGrid>,
+    ((peaks, grid_poses), count): ((&[Peak], &[Pose]), usize),
     body: &RigidBody,
     progress: &dyn Progress,
 ) -> Vec<RefinedPose> {
-    let count = plan.refined().min(peaks.len());
+    let count = count.min(peaks.len());
     progress.stage("refine", count as u64);
     let engine = &plan.search.engine;
-    let field = spectra
-        .filter(|_| count > 0)
-        .map(|spectra| PotentialGrid::new(engine, &spectra, &plan.ligand));
     let limits = AscentLimits {
         evaluations: 40,
         distance: 3.0 * plan.spacing,
@@ -355,7 +448,7 @@ fn refine(
     let refined = |(index, (peak, pose)): (usize, (&Peak, &Pose))| {
         let grid = (pose, peak.score);
         let is_wanted = index < count && progress.go_on().is_ok();
-        let Some(field) = field.as_ref().filter(|_| is_wanted) else {
+        let Some(field) = field.filter(|_| is_wanted) else {
             return RefinedPose::best_of((printed(pose), peak.score), None);
         };
         let center = engine.ligand_center();
@@ -383,7 +476,7 @@ impl Check {
         let poses: Vec<Pose> = grid_poses.iter().map(printed).collect();
         let at_grid: Vec<ScoreTerms> = poses.par_iter().map(|pose| scorer.terms(pose)).collect();
         let seconds = started.elapsed().as_secs_f64() / at_grid.len() as f64;
-        let unfiltered = poses.par_iter().map(|pose| scorer.shape(pose).unfiltered);
+        let unfiltered = poses.par_iter().map(|pose| scorer.unfiltered(pose));
         Self {
             unfiltered: unfiltered.collect(),
             at_grid,

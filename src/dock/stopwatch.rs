@@ -77,6 +77,11 @@ impl Stopwatch {
         self.started = Started::now();
     }
 
+    /// Starts the next stage now.
+    pub fn resume(&mut self) {
+        self.started = Started::now();
+    }
+
     /// The stages that ended, in order.
     pub fn into_stages(self) -> Vec<StageTime> {
         self.stages

@@ -214,8 +214,8 @@ pub struct SampledPart {
     pub spacing: f64,
     /// eps = sqrt(3) h / 2.
     pub epsilon: f64,
-    /// Nodes along each edge of a cell of the lattice; `null` without a lattice.
-    pub per_cell: Option<usize>,
+    /// Nodes along each edge of a cell of the lattice, no whole number; `null` without a lattice.
+    pub per_cell: Option<f64>,
     /// Nodes strictly inside.
     pub inside_nodes: usize,
     /// Median local feature size, as a radius.
@@ -247,6 +247,16 @@ fn default_offset(epsilons: [f64; 2], features: [f64; 2]) -> f64 {
 
 /// Samples two parts for docking.
 pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair, MeshSceneError> {
+    Ok(sample_gaps(shapes, options, None)?.0)
+}
+
+/// Samples two parts for docking, and for a gap that is a share of that one. `None` if no share is given, or if the
+/// closer gap is finer than the parts are sampled.
+pub fn sample_gaps(
+    shapes: [Shape; 2],
+    options: &MeshOptions,
+    share: Option<f64>,
+) -> Result<(MeshPair, Option<MeshPair>), MeshSceneError> {
     let extents = shapes.map(|shape| match shape {
         Shape::Solid(solid) => {
             let longest = solid.half_sides().into_iter().fold(0.0, f64::max);
@@ -311,14 +321,19 @@ pub fn sample_pair(shapes: [Shape; 2], options: &MeshOptions) -> Result<MeshPair
         part: None,
         error: Error::input(error).help("give a number in this range"),
     })?;
-    Ok(MeshPair {
-        parts: [
-            measured[0].sampled(0, offset, options)?,
-            measured[1].sampled(1, offset, options)?,
-        ],
-        offset,
-        sampler: options.sampler,
-    })
+    let pair_at = |offset: f64| -> Result<MeshPair, MeshSceneError> {
+        Ok(MeshPair {
+            parts: [
+                measured[0].sampled(0, offset, options)?,
+                measured[1].sampled(1, offset, options)?,
+            ],
+            offset,
+            sampler: options.sampler,
+        })
+    };
+    let closer = share.map(|share| share * offset);
+    let closer = closer.filter(|&closer| closer >= low);
+    Ok((pair_at(offset)?, closer.map(pair_at).transpose()?))
 }
 
 /// A part on its grid.

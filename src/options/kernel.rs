@@ -20,7 +20,8 @@ options! {
         /// Depth r0 of the skin.
         ///
         /// For meshes it is the gap that is looked for between the parts. Its default is then twice the eps of both parts'
-        /// sampling, and at most twice the smaller feature size.
+        /// sampling, and at most twice the smaller feature size. The sampler `lattice` searches 0.65 of that too, and
+        /// keeps the better gap, unless --offset, --resolution, --pass-length, --spacing or --budget is given.
         offset: f64 = 2.2, "ANGSTROM", NOT_NEGATIVE;
         /// Exponent of the bump kernel: large values harden the balls, `inf` makes them sharp.
         #[serde(with = "exponent")]

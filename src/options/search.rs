@@ -16,7 +16,8 @@ options! {
         rotations: usize = 3600, "COUNT|ANGLE", Rotations(ROTATIONS);
         /// Search again, among this many rotations, about the best: a number or an angle.
         ///
-        /// Their peaks take the place of the best rotations' own.
+        /// Their peaks take the place of the best rotations' own. Meshes have 30,000, of which a share of 0.2 is searched,
+        /// unless this option, --rotations, --fine-share or --budget is given.
         fine_rotations: Option<usize> = None, "COUNT|ANGLE", Optional(Rotations(ROTATIONS));
         /// Share of the finer rotations that are searched.
         fine_share: f64 = 0.05, "SHARE", SHARE;

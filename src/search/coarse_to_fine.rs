@@ -25,12 +25,12 @@ pub struct FineSearched {
     pub cells: usize,
 }
 
-/// Searches the finer rotations about the best of `coarse`, peaks best first. Returned are the best peaks of both,
-/// best first, and the coverage.
+/// Searches the finer rotations about the best of `coarse`, all its peaks best first. Returned are the best peaks of
+/// both, best first, and the coverage.
 pub(crate) fn search_finer(
     plan: &SearchPlan,
     engine: &ScanEngine,
-    coarse: Vec<Peak>,
+    mut coarse: Vec<Peak>,
     progress: &dyn Progress,
 ) -> Result<(Vec<Peak>, FineSearched), Error> {
     let (set, fine_set) = (&plan.rotations.coarse, &plan.rotations.fine);
@@ -52,6 +52,7 @@ pub(crate) fn search_finer(
             cells += 1;
         }
     }
+    coarse.truncate(plan.kept);
     let is_chosen = |index: usize| chosen[cell_of[index] as usize];
     let groups = plan.rotations.fine_groups(is_chosen);
     progress.stage("fine", rotations as u64);

@@ -1,7 +1,7 @@
 //! Fairness of the product kernel: faces count by their area, whatever balls a solid is made of.
 
 use super::landscape::double_skin_scores;
-use knotdock::dock::pair::{GivenLengths, PreparedPair, Sampling, sampled_defaults};
+use knotdock::dock::pair::{GivenDefaults, PreparedPair, Sampling, sampled_defaults};
 use knotdock::mesh::MeshOptions;
 use knotdock::mesh::samplers::Sampler;
 use knotdock::options::{DockOptions, SampleWeights};
@@ -67,7 +67,7 @@ fn faces_score_by_their_area() {
     let sampling = Sampling::of(solids, &options).unwrap();
     let mut docking = DockOptions::default();
     docking.sampling.sampler = Some(Sampler::Bi);
-    sampled_defaults(&sampling.pair, &mut docking, GivenLengths::default());
+    sampled_defaults(&sampling.pair, &mut docking, GivenDefaults::default());
     for part in &sampling.pair.parts {
         let fit = part.double_skin.as_ref().unwrap();
         println!("{} balls, {fit:?}", part.balls);

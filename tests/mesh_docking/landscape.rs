@@ -2,7 +2,7 @@
 
 use super::parts::{Pair, Part};
 use super::scenes::{broken, peg, solid, torus};
-use knotdock::dock::pair::{GivenLengths, sampled_defaults};
+use knotdock::dock::pair::{GivenDefaults, sampled_defaults};
 use knotdock::dock::scene::Scene;
 use knotdock::mesh::samplers::lattice::RADIUS;
 use knotdock::mesh::samplers::{RESOLUTION, Sampler, bi};
@@ -36,7 +36,7 @@ fn sampled(pair: &Pair) -> MeshPair {
 
 fn scorer(meshes: &MeshPair) -> ExactScorer {
     let mut options = DockOptions::default();
-    sampled_defaults(meshes, &mut options, GivenLengths::default());
+    sampled_defaults(meshes, &mut options, GivenDefaults::default());
     let scene = Scene::of_meshes(meshes, &options).unwrap();
     let plan = Plan::new(&scene.receptor, &scene.ligand, options.kernel.engine()).unwrap();
     ExactScorer::new(plan.kernel(), &scene.receptor, &scene.ligand).unwrap()

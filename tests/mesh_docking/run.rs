@@ -7,6 +7,7 @@ use super::parts::{Pair, broken_block};
 use super::scenes::away;
 use assert_cmd::Command;
 use assert_cmd::cargo::cargo_bin_cmd;
+use knotdock::dock::gaps::CLOSER;
 use knotdock_scoring::se3::Pose;
 use serde_json::Value;
 
@@ -131,6 +132,20 @@ fn repeats_itself(more: &[&str]) {
     assert_eq!(record("one"), record("two"));
     assert_eq!(record("one"), record("again"));
     let run = &first["run"];
+    // Only a first run of the lattice searches the gap; its record has the one that is kept.
+    let gaps = &run["machine"]["chosen"]["gaps"];
+    assert_eq!(gaps.is_null(), more[1] == "bi");
+    if let [wide, closer] = gaps.as_array().map_or(&[][..], Vec::as_slice) {
+        let of = |gap: &Value, name: &str| gap[name].as_f64().unwrap();
+        let ratio = of(closer, "offset") / of(wide, "offset");
+        assert!((ratio - CLOSER).abs() < 1e-9);
+        let keeps_closer = of(closer, "facing_area") > of(wide, "facing_area");
+        let kept = if keeps_closer { closer } else { wide };
+        assert_eq!(run["options"]["kernel"]["offset"], kept["offset"]);
+    }
+    let again = fs::read_to_string(place.path("again/run.json")).unwrap();
+    let again: Value = serde_json::from_str(&again).unwrap();
+    assert!(again["machine"]["chosen"].is_null());
     for side in ["receptor", "ligand"] {
         let sampling = &run["inputs"][side]["sampling"];
         assert_eq!(sampling["sampler"], more[1]);
@@ -142,6 +157,62 @@ fn repeats_itself(more: &[&str]) {
     for effect in run["effects"].as_array().unwrap() {
         assert_eq!(effect["on"], effect["effect"] == "shape");
     }
+}
+
+/// Finer rotations are searched by default, but not beside given ones; a given offset or a time limit fixes the gap, and a
+/// batch knows a run again whichever gap it kept.
+#[test]
+fn defaults_give_way_to_what_is_given() {
+    let place = Place::of(&broken_block(0.05));
+    let grid = ["receptor.stl", "ligand.stl", "--sample-grid", "20^3"];
+    let docked = |more: &[&str]| {
+        dock(
+            &place,
+            &[&grid[..], &["--force", "-o", "run"], more].concat(),
+        )
+    };
+    let brief = ["--poses", "30", "--refine", "5"];
+    let default = docked(&brief);
+    let search = &default["run"]["options"]["search"];
+    assert_eq!(search["fine_rotations"], 30_000);
+    assert_eq!(search["fine_share"], 0.2);
+    // However few poses are kept, the share is searched.
+    let finer = &default["run"]["finer_search"]["rotations"];
+    assert!((6000..6100).contains(&finer.as_u64().unwrap()), "{finer}");
+    let offset = default["run"]["machine"]["chosen"]["gaps"][0]["offset"].to_string();
+    for given in [
+        &["--rotations", "60", "--offset", &offset][..],
+        &["--budget", "4s"],
+    ] {
+        let run = &docked(&[&brief[..], given].concat())["run"];
+        assert!(run["options"]["search"]["fine_rotations"].is_null());
+        assert!(run["machine"]["chosen"]["gaps"].is_null());
+    }
+    place.write(
+        "pairs.csv",
+        "name,receptor,ligand\npair,receptor.stl,ligand.stl\n",
+    );
+    let batch = || {
+        let words = [
+            "batch",
+            "pairs.csv",
+            "-o",
+            "batch",
+            "--json",
+            "--",
+            "--rotations",
+            "20",
+        ];
+        let output = place
+            .command(&[&words[..], &["--sample-grid", "20^3"]].concat())
+            .output();
+        let output = output.unwrap();
+        let words = String::from_utf8_lossy(&output.stderr);
+        assert!(output.status.success(), "{words}");
+        let found: Value = serde_json::from_slice(&output.stdout).unwrap();
+        found["pairs"][0]["status"].clone()
+    };
+    assert_eq!([batch(), batch()], ["docked", "kept"]);
 }
 
 /// In another unit every length of a scene is scaled by the same factor, and nothing else changes: no constant is in Å.
@@ -239,7 +310,8 @@ fn a_pose_of_meshes_has_its_score_and_ladder() {
     let place = Place::of(&broken_block(0.05));
     for sampler in ["lattice", "bi"] {
         let more = ["--sampler", sampler, "-o", sampler];
-        quick(&place, &more);
+        let run = quick(&place, &more);
+        let offset = run["run"]["options"]["kernel"]["offset"].to_string();
         let (pose, score) =
             scored_poses(&place.path(&format!("{sampler}/poses.csv"))).swap_remove(0);
         let numbers: Vec<f64> = (pose.quaternion().into_iter())
@@ -253,6 +325,8 @@ fn a_pose_of_meshes_has_its_score_and_ladder() {
             "ligand.stl",
             "--sample-grid",
             "20^3",
+            "--offset",
+            &offset,
         ];
         let (pose, sampler) = (
             format!("--pose={}", words.join(",")),

@@ -9,6 +9,7 @@ use crate::inputs::bodies::{Bodies, sampled, spec_of};
 use crate::inputs::checks::refuse_traces;
 use crate::inputs::molecules::Input;
 use crate::inputs::poses::pose;
+use crate::inputs::request::GivenMeshOptions;
 use crate::inputs::solids::is_shape;
 use crate::messages::console::Console;
 use crate::messages::dock::{known_text, regions_text, site_text};
@@ -97,14 +98,17 @@ impl Score {
         given: GivenOptions,
         console: Console,
     ) -> Result<(), Error> {
-        let given_lengths = (&given).into();
+        let given_defaults = GivenMeshOptions {
+            fixes_gap: true,
+            ..(&given).into()
+        };
         let mut dock = given.options;
         let bodies = Bodies::read(&self.receptor, &self.ligand, &dock)?;
         bodies.describe(Arrangement::Pair, console);
         let Bodies::Meshes(inputs) = &bodies else {
             return Err(Error::input("two meshes are needed"));
         };
-        let sampling = sampled(inputs, &mut dock, given_lengths, console)?;
+        let (sampling, _) = sampled(inputs, &mut dock, given_defaults, console)?;
         let scene = Scene::of_meshes(&sampling.pair, &dock)?;
         let scored = score::score(&scene, pose, &self.ladder(&dock))?;
         console.say(format!("\n{}", ladder_text(&scored, "unit")));

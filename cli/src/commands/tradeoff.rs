@@ -80,6 +80,7 @@ impl TradeoffCommand {
         let native = self.native.read()?;
         let bodies = Bodies::read(&self.receptor, &self.ligand, &given.options)?;
         let mut request = Request::of(bodies, native, given);
+        request.given.fixes_gap = true;
         check(&request, self.parameters.as_deref().unwrap_or_default())?;
         let parameters = self.parameters.unwrap_or_else(Parameter::all);
         let directory = self.output.unwrap_or_else(|| {

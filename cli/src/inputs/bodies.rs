@@ -9,9 +9,11 @@ use crate::inputs::request::GivenMeshOptions;
 use crate::inputs::solids::{ShapeInput, ball_file_of, is_shape};
 use crate::messages::console::Console;
 use crate::report::RunContacts;
+use knotdock::dock::gaps::CLOSER;
 use knotdock::dock::pair::{Pair, PreparedPair, Sampling, sampled_defaults};
 use knotdock::dock::scene::ring_axis;
-use knotdock::mesh::{MeshOptions, MeshPair};
+use knotdock::mesh::samplers::Sampler;
+use knotdock::mesh::{MeshOptions, MeshPair, Shape};
 use knotdock::options::DockOptions;
 use knotdock::output::records::input_record::InputRecord;
 use knotdock::output::records::manifest::InputEntry;
@@ -19,6 +21,7 @@ use knotdock::output::run_folder;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::Error;
+use knotdock_structures::mesh::Solid;
 use knotdock_structures::molecule::InputSpec;
 
 pub enum Bodies {
@@ -135,8 +138,11 @@ impl Bodies {
             )
             .help("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
-                let sampling = sampled(inputs, options, given, console)?;
-                PreparedPair::meshes(Arc::new(sampling), options)
+                let (sampling, closer) = sampled(inputs, options, given, console)?;
+                Ok(PreparedPair {
+                    closer,
+                    ..PreparedPair::meshes(Arc::new(sampling), options)?
+                })
             }
         }
     }
@@ -147,6 +153,17 @@ impl Bodies {
                 Pair::Molecules(inputs.each_ref().map(|input| &input.molecule))
             }
             Self::Meshes(inputs) => Pair::Meshes(inputs.each_ref().map(ShapeInput::shape)),
+        }
+    }
+
+    /// Both as solids; `None` for molecules and balls of files.
+    pub fn solids(&self) -> Option<[&Solid; 2]> {
+        let Self::Meshes(inputs) = self else {
+            return None;
+        };
+        match inputs.each_ref().map(ShapeInput::shape) {
+            [Shape::Solid(receptor), Shape::Solid(ligand)] => Some([receptor, ligand]),
+            _ => None,
         }
     }
 
@@ -232,15 +249,20 @@ fn refuse_without_effect(options: &DockOptions, are_meshes: bool) -> Result<(), 
     })
 }
 
-/// Meshes as balls. Options that follow from them are filled in, and the sampling is reported.
+/// Meshes as balls, and for a closer gap if the gap is searched. Options that follow from them are filled in, and the
+/// sampling is reported.
 pub fn sampled(
     inputs: &[ShapeInput; 2],
     options: &mut DockOptions,
-    GivenMeshOptions { offset, lengths }: GivenMeshOptions,
+    GivenMeshOptions {
+        offset,
+        defaults,
+        fixes_gap,
+    }: GivenMeshOptions,
     console: Console,
-) -> Result<Sampling, Error> {
+) -> Result<(Sampling, Option<Sampling>), Error> {
     let sampler = *options.sampling.sampler.get_or_insert_default();
-    if !lengths.alpha {
+    if !defaults.alpha {
         options.kernel.alpha = sampler.alpha();
     }
     let sampling = MeshOptions {
@@ -254,22 +276,26 @@ pub fn sampled(
         offset,
         alpha: options.kernel.alpha,
         lambda: options.kernel.lambda,
-        resolution: lengths.resolution.then_some(options.kernel.resolution),
+        resolution: defaults.resolution.then_some(options.kernel.resolution),
         pass_length: options.kernel.pass_length,
         memory: options.machine.memory,
     };
     room_to_sample(sampling.per_axis, options.machine.memory)?;
     let solids = inputs.each_ref().map(ShapeInput::shape);
-    let sampling = Sampling::of(solids, &sampling).map_err(|error| match error.part {
-        Some(part) => error.error.at(&inputs[part].file.record.path),
-        None => error.error,
-    })?;
-    sampled_defaults(&sampling.pair, options, lengths);
+    // The other sampler has balls of every size, so that a closer gap takes several times as long.
+    let share = (!fixes_gap && sampler == Sampler::Lattice).then_some(CLOSER);
+    let sampled =
+        Sampling::of_gaps(solids, &sampling, share).map_err(|error| match error.part {
+            Some(part) => error.error.at(&inputs[part].file.record.path),
+            None => error.error,
+        })?;
+    let pair = &sampled.0.pair;
+    sampled_defaults(pair, options, defaults);
     console.say(match console.verbose {
-        true => sampling_text(&sampling.pair),
-        false => brief_sampling_text(&sampling.pair),
+        true => sampling_text(pair),
+        false => brief_sampling_text(pair),
     });
-    Ok(sampling)
+    Ok(sampled)
 }
 
 /// The sampling of the meshes in a line.
@@ -297,7 +323,7 @@ fn sampling_text(pair: &MeshPair) -> String {
         };
         let (low, high) = (part.smallest_radius, part.radius);
         let radii = match part.per_cell {
-            Some(k) => format!("radius {high:.4e}, one for {k} x {k} x {k} nodes"),
+            Some(k) => format!("radius {high:.4e}, one for each cell of {k:.2} nodes"),
             None => format!("radius {low:.4e} to {high:.4e}"),
         };
         format!(

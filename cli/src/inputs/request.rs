@@ -1,6 +1,7 @@
 //! Request of a docking run, from the command line or from an earlier run's `run.json`.
 
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -9,7 +10,8 @@ use crate::inputs::bodies::Bodies;
 use crate::inputs::native::NativeFiles;
 use crate::messages::console::Console;
 use crate::records::recorded_run::RecordedRun;
-use knotdock::dock::pair::{GivenLengths, PreparedPair, Sampling};
+use knotdock::dock::gaps::closer;
+use knotdock::dock::pair::{GivenDefaults, PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
 use knotdock::options::{DockOptions, MachineOptions};
 use knotdock::output::files::staging::put_back;
@@ -24,18 +26,26 @@ pub struct GivenMeshOptions {
     /// The offset, if it is given.
     pub offset: Option<f64>,
     /// Which further ones are given.
-    pub lengths: GivenLengths,
+    pub defaults: GivenDefaults,
+    /// Whether one gap is searched: a length is given, the clock ends the search, or nothing is docked.
+    pub fixes_gap: bool,
 }
 
 impl From<&GivenOptions> for GivenMeshOptions {
     fn from(given: &GivenOptions) -> Self {
         Self {
             offset: given.has("offset").then_some(given.options.kernel.offset),
-            lengths: GivenLengths {
+            defaults: GivenDefaults {
                 resolution: given.has("resolution"),
                 cluster_radius: given.has("cluster_radius"),
                 alpha: given.has("alpha"),
+                rotations: ["rotations", "fine_rotations", "fine_share"]
+                    .into_iter()
+                    .any(|name| given.has(name)),
             },
+            fixes_gap: ["offset", "resolution", "pass_length", "spacing"]
+                .into_iter()
+                .any(|name| given.has(name)),
         }
     }
 }
@@ -72,7 +82,7 @@ pub struct Request {
     pub bodies: Bodies,
     /// The known complex, if one was named.
     pub native: Option<NativeFiles>,
-    /// What to do; of meshes, lengths that are not given follow from them.
+    /// What to do; a plan of meshes fills in defaults for them.
     pub options: DockOptions,
     /// Options that are given and do not follow from meshes.
     pub given: GivenMeshOptions,
@@ -122,11 +132,13 @@ impl Request {
                 .transpose()?,
             given: GivenMeshOptions {
                 offset: Some(run.options.kernel.offset),
-                lengths: GivenLengths {
+                defaults: GivenDefaults {
                     resolution: true,
                     cluster_radius: true,
                     alpha: true,
+                    rotations: true,
                 },
+                fixes_gap: true,
             },
             is_angle: true,
             options: run.options,
@@ -136,6 +148,19 @@ impl Request {
     /// Plans the run; of meshes, options that follow from them are filled in.
     pub fn plan(&mut self, console: Console) -> Result<PreparedPair, Error> {
         self.bodies.plan(&mut self.options, self.given, console)
+    }
+
+    /// Options and plan at the closer gap, if the gap of meshes is searched.
+    pub fn closer_gap(
+        &self,
+        prepared: &mut PreparedPair,
+    ) -> Result<Option<(DockOptions, PreparedPair)>, Error> {
+        let Some(sampling) = prepared.closer.take() else {
+            return Ok(None);
+        };
+        let options = closer(&self.options, self.given.defaults.cluster_radius);
+        let prepared = PreparedPair::meshes(Arc::new(sampling), &options)?;
+        Ok(Some((options, prepared)))
     }
 
     /// Matches the known complex, if there is one; a mismatch is a warning.

@@ -5,6 +5,7 @@ use std::path::Path;
 
 use crate::messages::shown::shell_word;
 use crate::tables::report::{counted, text_table};
+use knotdock::dock::gaps::DockedAtGap;
 use knotdock::dock::outcome::{DockOutcome, EffectCost};
 use knotdock::dock::plan::DockPlan;
 use knotdock::options::EngineChoice;
@@ -432,6 +433,27 @@ pub fn expected_text(plan: &DockPlan, chosen: Option<&Chosen>, is_angle: bool) -
         }
     }
     text
+}
+
+/// That a closer gap between meshes is searched, too.
+pub fn closer_gap_text(offset: f64) -> String {
+    format!(
+        "Searches a gap of {offset:.3e} too, and keeps the one at which more of the surfaces face each other; --offset \
+         fixes the gap"
+    )
+}
+
+/// Facing areas at the gaps that were searched.
+pub fn gaps_text(docked: &DockedAtGap) -> String {
+    let [wide, closer] = docked.gaps;
+    format!(
+        "Facing area {:.3e} at a gap of {:.3e}, {:.3e} at {:.3e}: keeps the {} gap",
+        wide.facing_area,
+        wide.offset,
+        closer.facing_area,
+        closer.offset,
+        if docked.gap == 0 { "wider" } else { "closer" }
+    )
 }
 
 /// A share as people say it.

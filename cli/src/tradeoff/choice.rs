@@ -58,6 +58,7 @@ pub fn choose(
         accuracy: wanted.accuracy,
         budget_seconds: wanted.budget,
         predicted_error,
+        gaps: None,
     })
 }
 

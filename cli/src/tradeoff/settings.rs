@@ -354,11 +354,18 @@ impl Change {
         Ok(changed)
     }
 
-    /// Further arguments that a run with `default` options needs: given lengths, and a finer set of rotations.
+    /// Further arguments that a run with `default` options needs: given lengths, and a finer set of rotations. Meshes
+    /// have one by default, but not beside given rotations.
     fn companions(&self, default: &DockOptions, changed: &DockOptions) -> String {
         let (pass_length, finer) = (changed.kernel.pass_length, changed.search.fine_rotations);
+        let are_meshes = changed.sampling.sample_grid.is_some();
+        let share = changed.search.fine_share;
         match (self.option, pass_length, finer) {
             ("resolution", Some(length), _) => format!(" --pass-length {length}"),
+            ("rotations", _, Some(finer)) if are_meshes => {
+                format!(" --fine-rotations {finer} --fine-share {share}")
+            }
+            ("fine_rotations", ..) if are_meshes => format!(" --fine-share {share}"),
             ("rotations", _, Some(finer)) if default.search.fine_rotations != Some(finer) => {
                 format!(" --fine-rotations {finer}")
             }
@@ -504,6 +511,8 @@ mod tests {
             options.kernel.pass_length = Some(9.0);
             options.sampling.sample_grid = Some(SampleGrid { per_axis: 64 });
             options.kernel.resolution = 4.5;
+            options.search.fine_rotations = Some(30_000);
+            options.search.fine_share = 0.2;
         }));
         let finer = settings
             .iter()
@@ -514,6 +523,11 @@ mod tests {
             "--resolution 3.5 --pass-length 7 --spacing 1.56"
         );
         assert_eq!(finer.options.kernel.pass_length, Some(7.0));
+        let fewer = settings.iter().find(|s| s.name == "rotations 600");
+        assert_eq!(
+            fewer.unwrap().arguments,
+            "--rotations 600 --fine-rotations 30000 --fine-share 0.2"
+        );
         let grids = settings
             .iter()
             .filter(|s| s.parameter == Parameter::Option("sample_grid"));

@@ -22,13 +22,13 @@ use super::{PartToSample, RESOLUTION, SamplerError, WeightedBalls};
 
 /// Radius of the balls in offsets: 2.5 Å for an offset of 2.2 Å.
 pub const RADIUS: f64 = 2.5 / 2.2;
-/// Widest cell of the lattice in offsets: half the default resolution.
+/// Width of the lattice's cells in offsets: half the default resolution.
 const CELL: f64 = 0.5 * RESOLUTION;
 
 pub(in crate::mesh) fn sample(part: &PartToSample) -> Result<WeightedBalls, SamplerError> {
     let unit = part.solid.frame().unit;
     let (offset, spacing) = (part.offset * unit, part.field.grid.spacing() * unit);
-    let per_cell = ((CELL * offset / spacing).floor() as usize).max(1);
+    let per_cell = (CELL * offset / spacing).max(1.0);
     let balls = lattice(part.field, per_cell, RADIUS * offset / unit);
     let bump = part.kernel.and_then(|kernel| Bump::new(kernel.alpha).ok());
     let fit = bump.map(|bump| weights::fit(part.field, &balls, bump, part.volume()));

@@ -140,7 +140,7 @@ pub(super) struct WeightedBalls {
     /// Weights of the balls grown by the skin; empty where the sampler has none.
     pub skin_weights: Vec<f64>,
     /// Nodes along each edge of a cell, for balls on a lattice.
-    pub per_cell: Option<usize>,
+    pub per_cell: Option<f64>,
     /// The fit of the weights, if they were fitted.
     pub fit: Option<FittedWeights>,
     /// The fit of the double skin.

@@ -10,6 +10,7 @@ use knotdock_structures::molecule::{ChainMap, Molecule};
 use serde::Serialize;
 use serde_json::Value;
 
+use crate::dock::gaps::SearchedGap;
 use crate::dock::outcome::{EffectCost, MeasuredError, SharpOutcome, StageTime};
 use crate::dock::plan::DockPlan;
 use crate::mesh::SampledPart;
@@ -116,7 +117,7 @@ pub(crate) struct Timing {
 }
 
 /// The chosen setting, with its expected cost and quality.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct Chosen {
     /// Error that was requested.
     pub accuracy: Option<f64>,
@@ -124,6 +125,8 @@ pub struct Chosen {
     pub budget_seconds: Option<f64>,
     /// Error that is expected, where the setting was chosen by it.
     pub predicted_error: Option<f64>,
+    /// Gaps that were searched; `null` if there was one alone.
+    pub gaps: Option<[SearchedGap; 2]>,
 }
 
 /// Machine, threads and memory of the run. Differs from machine to machine.
@@ -149,7 +152,7 @@ pub struct Machine {
     pub adapter: Option<Adapter>,
     /// The command line.
     pub command: Vec<String>,
-    /// The basis of the plan, where an accuracy or a time was requested.
+    /// The basis of settings that were chosen: by an accuracy, a time or a search for the gap.
     pub chosen: Option<Chosen>,
 }
 

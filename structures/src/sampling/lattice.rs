@@ -1,7 +1,7 @@
 //! Balls of one radius on a lattice: a solid as a smooth density of limited resolution.
 //!
-//! Cells of k x k x k nodes tile the grid, evenly about its middle. Every cell with nodes inside the solid gives one
-//! ball, at the mean of these nodes, so that a cell which the surface cuts has its ball where its share of the solid
+//! Cubic cells, k nodes wide, tile the grid evenly about its middle; k need not be whole. Every cell with nodes inside
+//! the solid gives one ball, at the mean of these nodes, so that a cell which the surface cuts has its ball where its share of the solid
 //! is. With weights fitted to the nodes ([`super::weights`]) the summed bumps then count volume: about one inside and
 //! zero outside, however the lattice lies.
 //!
@@ -13,18 +13,20 @@ use crate::ball::Ball;
 use crate::sampling::grid::DepthField;
 
 /// The balls, in rising order of their cells; `per_cell` is k, at least one, and `radius` in the solid's unit.
-pub fn lattice(field: &DepthField, per_cell: usize, radius: f64) -> Vec<Ball> {
-    let k = per_cell.max(1);
-    let n = field.grid.per_axis();
-    // Cells overhang the grid alike at both ends, so that a solid and its mirror image give mirror images.
-    let cells = n.div_ceil(k);
-    let overhang = (cells * k - n) / 2;
+pub fn lattice(field: &DepthField, per_cell: f64, radius: f64) -> Vec<Ball> {
+    let k = per_cell.max(1.0);
+    let n = field.grid.per_axis() as f64;
+    // Cells overhang the grid alike at both ends, so that a solid and its mirror image give mirror images but for nodes
+    // halfway between two cells.
+    let count = (n / k).ceil();
+    let overhang = 0.5 * (count * k - n);
+    let cells = count as usize;
     let mut sums = vec![([0.0f64; 3], 0usize); cells * cells * cells];
     for node in field.inside() {
         let [x, y, z] = field
             .grid
             .numbers(node)
-            .map(|number| (number + overhang) / k);
+            .map(|number| ((number as f64 + 0.5 + overhang) / k) as usize);
         let (sum, count) = &mut sums[(z * cells + y) * cells + x];
         let place = field.grid.node(node);
         for axis in 0..3 {
@@ -46,21 +48,21 @@ mod tests {
     use crate::sampling::weights;
     use crate::test_support::cuboid;
 
-    /// Cells of one node are the nodes; larger ones keep their number of nodes and first moments: no volume is lost or
-    /// moved.
+    /// Cells of one node are the nodes; larger ones, of a whole number of nodes or not, leave none out.
     #[test]
     fn every_inside_node_is_in_one_cell() {
         let solid = cuboid([0.5, 0.4, 0.23]);
         let field = DepthField::new(&solid, Grid::new(&solid, 20));
         let inside = field.inside();
-        let single = lattice(&field, 1, 0.1);
+        let single = lattice(&field, 1.0, 0.1);
         assert_eq!(single.len(), inside.len());
         for (ball, &node) in single.iter().zip(&inside) {
             assert_eq!(ball.center, field.grid.node(node));
         }
-        for k in [2, 3, 7, 40] {
+        for k in [2.0f64, 2.48, 3.0, 7.0, 40.0] {
             let balls = lattice(&field, k, 0.1);
-            assert!(balls.len() * k * k * k >= inside.len() && balls.len() < inside.len());
+            let largest = k.ceil().powi(3) as usize;
+            assert!(balls.len() * largest >= inside.len() && balls.len() < inside.len());
             // Inside a convex solid means stay inside it.
             assert!(balls.iter().all(|ball| solid.is_inside(ball.center)));
         }
@@ -74,8 +76,8 @@ mod tests {
         let field = DepthField::new(&solid, Grid::new(&solid, 40));
         let volume = solid.mesh().volume();
         let bump = Bump::new(2.0).unwrap();
-        for k in [2, 3] {
-            let cell = k as f64 * field.grid.spacing();
+        for k in [2.0, 2.6, 3.0, 3.54] {
+            let cell = k * field.grid.spacing();
             let balls = lattice(&field, k, 1.3 * cell);
             let fitted = weights::fit(&field, &balls, bump, volume);
             let (with_fitted, with_unit) = (fitted.volume_fitted, fitted.volume_unit);
