@@ -29,6 +29,9 @@ const PROBED: usize = 100;
 const REACH: f64 = 1.55;
 /// Least cosine between a normal and the way to the nearest point that is straight ahead.
 const AHEAD: f64 = 0.8;
+/// Ratio of facing areas from which on the closer gap is better. If both gaps find one pose, areas differ by the places
+/// of the samples alone, and the wider gap has fewer balls to rank by.
+const MARGIN: f64 = 1.01;
 /// Largest distance between a point of a surface and its nearest sample, in wider gaps.
 const SAMPLE_SPACING: f64 = 0.5;
 
@@ -96,7 +99,7 @@ fn dock_on_threads(
             facing_area: searched.best().map_or(0.0, area),
         }
     });
-    let gap = usize::from(gaps[1].facing_area > gaps[0].facing_area);
+    let gap = usize::from(gaps[1].facing_area > MARGIN * gaps[0].facing_area);
     let (mut best, other) = match gap {
         0 => (first, second),
         _ => (second, first),

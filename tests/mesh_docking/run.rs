@@ -139,8 +139,10 @@ fn repeats_itself(more: &[&str]) {
         let of = |gap: &Value, name: &str| gap[name].as_f64().unwrap();
         let ratio = of(closer, "offset") / of(wide, "offset");
         assert!((ratio - CLOSER).abs() < 1e-9);
-        let keeps_closer = of(closer, "facing_area") > of(wide, "facing_area");
-        let kept = if keeps_closer { closer } else { wide };
+        // The default gap misses the joint on so coarse a grid.
+        let ratio = of(closer, "facing_area") / of(wide, "facing_area");
+        assert!(!(0.9..1.1).contains(&ratio), "{ratio}");
+        let kept = if ratio > 1.0 { closer } else { wide };
         assert_eq!(run["options"]["kernel"]["offset"], kept["offset"]);
     }
     let again = fs::read_to_string(place.path("again/run.json")).unwrap();
