@@ -163,6 +163,9 @@ fn open_and_crossing_meshes_are_refused() {
             .clone()
             .mapped(|[x, y, z]| [x + 1.0, y + 0.3, z + 0.2]),
     );
+    let smaller = block.clone().mapped(|at| at.map(|x| 0.5 * x));
+    let nested = block.clone().and(&smaller);
+    let hollow = block.clone().and(&smaller.inverted());
     let apart = block
         .clone()
         .and(&block.mapped(|[x, y, z]| [x + 3.0, y, z]));

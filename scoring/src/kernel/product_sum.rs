@@ -299,12 +299,12 @@ impl ReceptorClass {
                 continue;
             };
             let (u, [lower @ .., last]) = (simd.splat_f64s(u), panel);
-            for index in 0..count {
+            for (index, sum) in sums.iter_mut().enumerate().take(count) {
                 let mut value = vectors::<S>(last)[index];
                 for terms in lower.iter().rev() {
                     value = simd.mul_add_e_f64s(value, u, vectors::<S>(terms)[index]);
                 }
-                sums[index] = simd.mul_add_e_f64s(value, vectors::<S>(weights)[index], sums[index]);
+                *sum = simd.mul_add_e_f64s(value, vectors::<S>(weights)[index], *sum);
             }
         }
         let mut four = [0.0; 4];
@@ -395,11 +395,10 @@ mod tests {
         // Sums of the slices and of the magnitudes of their terms.
         let plain = |tables: &PairTables, pose: &Pose| {
             let (mut sums, mut sizes, mut left_out) = ([0.0; 3], [0.0; 3], 0);
-            for i in 0..a.len() {
-                for j in 0..b.len() {
+            for (i, &column) in class.iter().enumerate() {
+                for (j, &row) in ligand_class.iter().enumerate() {
                     let place = Vector3::from(pose.apply(b.centers[j]));
                     let distance = (place - Vector3::from(a.centers[i])).norm();
-                    let (row, column) = (ligand_class[j], class[i]);
                     if distance >= tables.reaches[row][column] {
                         left_out += 1;
                         continue;
