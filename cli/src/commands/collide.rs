@@ -88,7 +88,7 @@ enum MethodName {
     Tree,
     /// Modes alone, which certify hits and never that a pose is free.
     Modes,
-    /// As auto; pairs or modes are summed for forces, whichever cost less at the pose.
+    /// Verdicts as auto; for forces pairs of balls or modes are summed, whichever cost less at the pose.
     Hybrid,
 }
 

@@ -27,8 +27,8 @@ use super::{Certificate, Collision, CollisionQuery, has_come};
 /// How verdicts and forces are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Method {
-    /// Verdicts by balls, and by triangles where balls leave them open; forces as for [`Self::Hybrid`] if the bodies have
-    /// enough balls for modes to cost less.
+    /// Verdicts by balls, and by triangles where balls leave them open. Forces are those of the shared volume if triangles
+    /// decide, else as for [`Self::Hybrid`] if the bodies have enough balls for modes to cost less.
     #[default]
     Auto,
     /// Verdicts by triangles if they decide, forces as for [`Self::Auto`].
@@ -37,7 +37,7 @@ pub enum Method {
     Tree,
     /// Verdicts and forces by modes alone, which never certify that a pose is free.
     Modes,
-    /// As [`Self::Auto`], with forces by pairs or by modes, whichever cost less at the pose.
+    /// Verdicts as for [`Self::Auto`]; forces of the densities, by pairs or by modes, whichever cost less at the pose.
     Hybrid,
 }
 
@@ -111,12 +111,14 @@ impl Densities {
 }
 
 impl CollisionQuery<'_> {
-    /// Energy, force and torque: of the shared volume if the triangles of meshes decide, else of the bumps, by pairs or by
-    /// modes if these cost less. `None` if there are no densities, which [`Collision::prepare`] reports.
+    /// Energy, force and torque: of the shared volume if the triangles of meshes decide, else, and with
+    /// [`Method::Hybrid`], of the bumps, by pairs or by modes if these cost less. `None` if there are no densities, which
+    /// [`Collision::prepare`] reports.
     pub fn contact(&mut self) -> Option<Contact> {
         let collision = self.collision;
         let about = self.motion.apply(collision.solids[1].centroid());
-        if let Some(region) = self.region() {
+        let takes_region = collision.method != Method::Hybrid;
+        if let Some(region) = takes_region.then(|| self.region()).flatten() {
             let force = region.by_shift.map(|part| 0.0 - part);
             let torque = Vector3::from(about).cross(&Vector3::from(region.by_shift))
                 - Vector3::from(region.by_turn);

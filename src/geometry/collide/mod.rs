@@ -305,7 +305,8 @@ impl<'a> Collision<'a> {
             return Err(Error::input(format!("the margin is {}", self.margin))
                 .help("give a finite margin, 0 or above"));
         }
-        if self.method == Method::Modes || (self.force && self.exact().is_none()) {
+        let sums = self.exact().is_none() || self.method == Method::Hybrid;
+        if self.method == Method::Modes || (self.force && sums) {
             self.densities()?;
         }
         Ok(())

