@@ -57,7 +57,11 @@ impl Docking {
             let end = wanted.budget.and_then(|budget| clock.after(budget));
             (prepared, Some(chosen), end)
         };
-        let closer = request.closer_gap(&mut prepared)?;
+        let mut closer = request.closer_gap(&mut prepared)?;
+        if let Some((_, closer)) = &mut closer {
+            prepared.plan.count_beside(&closer.plan);
+            closer.plan.count_beside(&prepared.plan);
+        }
         let plan = &prepared.plan;
         let sides = arrangement.sides();
         console.detail(format!("\n{plan}"));
@@ -98,9 +102,7 @@ impl Docking {
 
     /// Memory that the run is expected to take, in bytes.
     pub fn memory_bytes(&self) -> u64 {
-        let closer = self.closer.iter().map(|(_, closer)| closer);
-        let bytes = closer.map(|closer| closer.plan.memory_bytes());
-        bytes.fold(self.prepared.plan.memory_bytes(), u64::max)
+        self.prepared.plan.memory_bytes()
     }
 
     /// Seconds that the search is expected to take on this machine.

@@ -248,6 +248,11 @@ impl DockPlan {
         self.memory.bytes()
     }
 
+    /// Counts the memory of another plan of the same run.
+    pub fn count_beside(&mut self, other: &Self) {
+        self.memory.count_beside(&other.memory);
+    }
+
     /// The stage of the run that takes the most memory.
     pub fn largest_stage(&self) -> &'static str {
         self.memory.largest()

@@ -9,7 +9,7 @@ use crate::inputs::request::GivenMeshOptions;
 use crate::inputs::solids::{ShapeInput, ball_file_of, is_shape};
 use crate::messages::console::Console;
 use crate::report::RunContacts;
-use knotdock::dock::gaps::CLOSER;
+use knotdock::dock::gaps::{self, CLOSER};
 use knotdock::dock::pair::{Pair, PreparedPair, Sampling, sampled_defaults};
 use knotdock::dock::scene::ring_axis;
 use knotdock::mesh::samplers::Sampler;
@@ -139,6 +139,11 @@ impl Bodies {
             .help("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
                 let (sampling, closer) = sampled(inputs, options, given, console)?;
+                // The closer gap needs more memory, so that a refusal of it names what suffices.
+                if let Some(closer) = closer.clone() {
+                    let options = gaps::closer(options, given.defaults.cluster_radius);
+                    PreparedPair::meshes(Arc::new(closer), &options)?;
+                }
                 Ok(PreparedPair {
                     closer,
                     ..PreparedPair::meshes(Arc::new(sampling), options)?

@@ -28,6 +28,8 @@ pub(crate) struct MemoryPlan {
     pub most_in_flight: usize,
     /// Graphics memory that rotations in flight may take; 0 on the CPU.
     pub graphics: u64,
+    /// Largest stage of another search of the same run, and its bytes.
+    beside: (&'static str, u64),
 }
 
 impl MemoryPlan {
@@ -69,6 +71,7 @@ impl MemoryPlan {
             allowed,
             most_in_flight,
             graphics,
+            beside: ("", 0),
         })
     }
 
@@ -97,12 +100,24 @@ impl MemoryPlan {
 
     /// Bytes that the run takes at its peak.
     pub fn bytes(&self) -> u64 {
+        self.own_bytes().max(self.beside.1)
+    }
+
+    fn own_bytes(&self) -> u64 {
         self.sizes.peak(self.in_flight) + self.graphics
     }
 
     /// The stage that takes the most.
     pub fn largest(&self) -> &'static str {
-        self.sizes.largest(self.in_flight).0
+        match self.beside.1 > self.own_bytes() {
+            true => self.beside.0,
+            false => self.sizes.largest(self.in_flight).0,
+        }
+    }
+
+    /// Counts another search of the same run.
+    pub fn count_beside(&mut self, other: &Self) {
+        self.beside = (other.largest(), other.bytes());
     }
 }
 
