@@ -21,6 +21,7 @@ use knotdock::rank::sharp::{SharpFinding, SharpPose};
 use knotdock::table_text::named_columns::listed;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Membrane;
+use knotdock_structures::mesh::Figure;
 use knotdock_structures::molecule::LabelReport;
 
 /// The effects that were on with their costs, and the error of the fast path.
@@ -438,8 +439,8 @@ pub fn expected_text(plan: &DockPlan, chosen: Option<&Chosen>, is_angle: bool) -
 /// That a closer gap between meshes is searched, too.
 pub fn closer_gap_text(offset: f64) -> String {
     format!(
-        "Searches a gap of {offset:.3e} too, and keeps the one at which more of the surfaces face each other; --offset \
-         fixes the gap"
+        "Searches a gap of {} too, and keeps the one at which more of the surfaces face each other; --offset fixes the gap",
+        Figure(offset)
     )
 }
 
@@ -447,11 +448,11 @@ pub fn closer_gap_text(offset: f64) -> String {
 pub fn gaps_text(docked: &DockedAtGap) -> String {
     let [wide, closer] = docked.gaps;
     format!(
-        "Facing area {:.3e} at a gap of {:.3e}, {:.3e} at {:.3e}: keeps the {} gap",
-        wide.facing_area,
-        wide.offset,
-        closer.facing_area,
-        closer.offset,
+        "Facing area {} at a gap of {}, {} at {}: keeps the {} gap",
+        Figure(wide.facing_area),
+        Figure(wide.offset),
+        Figure(closer.facing_area),
+        Figure(closer.offset),
         if docked.gap == 0 { "wider" } else { "closer" }
     )
 }

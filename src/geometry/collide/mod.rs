@@ -449,7 +449,7 @@ impl CollisionQuery<'_> {
         certificate
     }
 
-    /// The certificate by at most so many more pairs of balls.
+    /// The certificate after at most `most` more pairs of balls.
     fn certificate_by_balls(&mut self, limits: &Limits, most: usize) -> Certificate {
         let closest = self.advanced(limits, most);
         if closest.distance < limits.enough_below {
@@ -521,7 +521,7 @@ impl CollisionQuery<'_> {
         closest
     }
 
-    /// Goes on with the search for at most so many pairs of balls, as far as the deadline allows.
+    /// Goes on with the search for at most `most` pairs of balls, as far as the deadline allows.
     fn advanced(&mut self, limits: &Limits, most: usize) -> Closest {
         let (trees, motion) = (self.collision.trees(), &self.motion);
         let search = &mut self.work.search;

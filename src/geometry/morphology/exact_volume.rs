@@ -16,7 +16,7 @@
 //! A mesh B is in the balls of radius s + eps and holds those of radius s, which gives f a lower and an upper bound.
 //! A cell, a cube with corners within q of its middle c, is in the set if f(c) >= q, and outside if f(c) < -q. Other
 //! cells are cut in eight, down to a finest size. In such a one the ball of radius |f(c)| about c is in the set, or
-//! outside. The volume is at least that of what is shown inside, at most that of what is not shown outside.
+//! outside. Parts shown inside give the least volume, parts not shown outside the largest.
 //!
 //! The opening (A - B) + B is known by the cells of A - B. If f(t) >= 0 at a point t, the ball of radius f(t) about it
 //! is in A - B, so the balls (t + b, s + f(t)) are in the opening. (Of several copies only those are searched that
@@ -219,7 +219,7 @@ impl<'a> Copies<'a> {
 
     /// Bounds of the function at the middle of a cell, and the copies that decide at any point of it.
     ///
-    /// `candidates` come by falling bounds. Where the largest function is q above one at the middle, or zero is, that
+    /// `candidates` come by falling bounds. If the largest function is q above one at the middle, or zero is, that
     /// one decides at no point of the cell.
     fn bounds(
         &self,
@@ -293,7 +293,7 @@ fn directions() -> Vec<Vector3<f64>> {
 
 /// About the most balls that an opening or closing is known by.
 const MAX_BALLS: usize = 1 << 15;
-/// So many times more, and nothing is said of its volume.
+/// This many times more, and its volume has no bound.
 const TOO_MANY: usize = 32;
 
 /// Bounds of the volume of the opening of A by B.

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! A triangle's part in the other solid is a plane region. Its area and first moment are sums over its boundary (Green's
-//! theorem): the segments in which triangles of the other solid cross it, and the pieces of its own sides that are
+//! theorem): the segments in which triangles of the other solid cross it, and the pieces of its sides that are
 //! inside. With p the first corner, a piece from u to v counts as the triangle p, u, v. So sides through p count nothing.
 //! On the third side an exit from the other solid at c counts as the piece from the side's beginning to c, an entry as
 //! minus that. If the end of the side is inside, it counts as an exit. No pieces are put in order, and no polygon is made.
@@ -61,7 +61,8 @@ struct Side {
     inside: Vec<bool>,
 }
 
-/// Where a side crosses the other surface first and last: the share of the side, and whether it leaves the other solid.
+/// First and last crossing of a side through the other surface: the share of the side before it, and whether the side
+/// leaves the other solid there.
 #[derive(Debug)]
 struct Crossings {
     /// Number of the side: three times its triangle's, and its own.
