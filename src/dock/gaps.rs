@@ -5,7 +5,7 @@
 //!
 //! Scores of two gaps do not compare. Times the square of the offset they are about areas, but an edge counts as a strip
 //! as wide as the offset, which favours the wider gap. The *facing area* has no such strip: it is the area of one surface
-//! whose nearest point of the other is straight ahead, within [`REACH`] of the wider gap. Of the areas of both surfaces
+//! whose nearest point of the other is straight ahead, within 1.55 of the wider gap. Of the areas of both surfaces
 //! the smaller one counts, for a part that is wrapped loosely around another faces it with more than it is faced.
 
 use crate::dock::outcome::{DockOutcome, StageTime};
@@ -123,7 +123,7 @@ fn search<'a>(pair: &'a PreparedPair, progress: &dyn Progress) -> Result<Searche
     Ok(searched)
 }
 
-/// The smaller of the areas with which two solids face each other at a pose, within [`REACH`] times `gap`.
+/// The smaller of the areas with which two solids face each other at a pose, within `REACH` times `gap`.
 fn facing_area([receptor, ligand]: [&Solid; 2], pose: &Pose, gap: f64) -> f64 {
     let inverse = pose.inverse();
     area_before(receptor, ligand, pose, gap).min(area_before(ligand, receptor, &inverse, gap))
