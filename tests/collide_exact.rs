@@ -82,6 +82,7 @@ fn compare(meshes: [&Mesh; 2], poses: &[Pose], per_axis: usize) -> [usize; 3] {
     });
     let exact = Collision::new(&solids[0], &solids[1]).distance(true);
     let balls = exact.clone().method(Method::Tree);
+    let triangles = exact.clone().method(Method::Exact);
     let mut counts = [0; 3];
     for pose in poses {
         let corner = Vector3::from(meshes[1].positions()[0]);
@@ -93,7 +94,7 @@ fn compare(meshes: [&Mesh; 2], poses: &[Pose], per_axis: usize) -> [usize; 3] {
                 || holds(meshes[1], back(meshes[0].positions()[0])));
         let apart = parry.distance(pose).unwrap();
         let rounding = 1e-9;
-        for collision in [&exact, &balls] {
+        for collision in [&exact, &triangles, &balls] {
             let report = collision.at(pose).unwrap();
             let (verdict, bounds) = (report.verdict, report.distance.unwrap());
             let case = format!(

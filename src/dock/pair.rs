@@ -71,7 +71,7 @@ pub struct PreparedPair {
     /// Report on the sampling of the meshes.
     pub sampling: Option<Arc<Sampling>>,
     /// Sampling for a closer gap, if the gap is searched.
-    pub closer: Option<Sampling>,
+    pub closer: Option<Arc<Sampling>>,
     /// What sampling (of meshes) and planning took.
     pub timing: Vec<StageTime>,
 }

@@ -74,7 +74,7 @@ impl Stopwatch {
     /// Ends a stage and starts the next.
     pub fn lap(&mut self, name: &'static str) {
         self.stages.push(self.started.stage(name));
-        self.started = Started::now();
+        self.resume();
     }
 
     /// Starts the next stage now.

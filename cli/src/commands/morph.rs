@@ -163,9 +163,7 @@ impl Operation {
             common,
         }
     }
-}
 
-impl Operation {
     /// What an empty result means.
     fn emptiness(&self) -> String {
         match self {

@@ -139,10 +139,11 @@ impl Bodies {
             .help("dock two meshes, without --symmetry")),
             Self::Meshes(inputs) => {
                 let (sampling, closer) = sampled(inputs, options, given, console)?;
+                let closer = closer.map(Arc::new);
                 // The closer gap needs more memory, so that a refusal of it names what suffices.
-                if let Some(closer) = closer.clone() {
+                if let Some(closer) = &closer {
                     let options = gaps::closer(options, given.defaults.cluster_radius);
-                    PreparedPair::meshes(Arc::new(closer), &options)?;
+                    PreparedPair::meshes(Arc::clone(closer), &options)?;
                 }
                 Ok(PreparedPair {
                     closer,

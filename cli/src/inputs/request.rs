@@ -1,7 +1,6 @@
 //! Request of a docking run, from the command line or from an earlier run's `run.json`.
 
 use std::path::{Path, PathBuf};
-use std::sync::Arc;
 
 use serde_json::{Value, json};
 
@@ -159,7 +158,7 @@ impl Request {
             return Ok(None);
         };
         let options = closer(&self.options, self.given.defaults.cluster_radius);
-        let prepared = PreparedPair::meshes(Arc::new(sampling), &options)?;
+        let prepared = PreparedPair::meshes(sampling, &options)?;
         Ok(Some((options, prepared)))
     }
 

@@ -1,9 +1,9 @@
 //! The first time at which a moving solid hits another, between two bounds: conservative advancement.
 //!
-//! Body B moves along geodesics from pose to pose, one unit of time each. While the outer balls are apart, B may go on
-//! until a point of it could have crossed their gap. The path is known to be free until the gap is within the
-//! tolerance. From there on the inner balls are followed in the same way until some of them meet: by then the solids
-//! have met.
+//! Body B moves along geodesics from pose to pose, one unit of time each. While the bodies are apart, B may go on until a
+//! point of it could have crossed their gap: that of the outer balls, and near contact that of the triangles if these
+//! decide. The path is known to be free until the gap is within the tolerance. From there on B goes on in the same way
+//! until a hit is certain, by the gap of the triangles, or else of the inner balls: by then the solids have met.
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::ball_solid::Limits;
@@ -75,7 +75,7 @@ impl Collision<'_> {
         }
     }
 
-    /// The first time from `start` on at which inner balls are closer than the margin.
+    /// The first time from `start` on at which a hit is certain.
     fn hit_after(
         &self,
         path: &[Pose],

@@ -330,6 +330,7 @@ impl<'a> Collision<'a> {
             motion: self.motion(pose),
             start,
             end: self.deadline.and_then(|time| start.checked_add(time)),
+            contact: None,
             region: None,
             ball_pairs: 0,
             modes: 0,
@@ -378,6 +379,8 @@ pub struct CollisionQuery<'q> {
     motion: Motion,
     start: Instant,
     end: Option<Instant>,
+    /// A margin and how meshes are to each other with it, once that is known.
+    contact: Option<(f64, MeshContact)>,
     /// The region that meshes share, once it is known.
     region: Option<SharedRegion>,
     ball_pairs: usize,
@@ -467,9 +470,16 @@ impl CollisionQuery<'_> {
 
     /// How two meshes are to each other, as far as the deadline allows.
     fn meshes(&mut self, solids: [&ExactSolid; 2], margin: f64) -> MeshContact {
+        if let Some((known, contact)) = self.contact
+            && known == margin
+        {
+            return contact;
+        }
         let (lengths, end) = ([margin, self.rounding()], self.end);
         let surfaces = &mut self.work.surfaces;
-        surfaces.contact(solids, &self.motion, lengths, || has_come(end))
+        let contact = surfaces.contact(solids, &self.motion, lengths, || has_come(end));
+        self.contact = Some((margin, contact));
+        contact
     }
 
     /// Bounds of the signed distance.

@@ -225,7 +225,11 @@ fn deadlines_bracket() {
 
 #[test]
 fn forces_are_slopes_of_the_energy() {
-    for (method, error) in [(Method::Tree, 1e-6), (Method::Auto, 1e-8)] {
+    for (method, error) in [
+        (Method::Tree, 1e-6),
+        (Method::Hybrid, 1e-6),
+        (Method::Auto, 1e-8),
+    ] {
         slopes_of_the_energy(method, error);
     }
 }
@@ -327,6 +331,69 @@ fn boxes_with_parallel_faces() {
             "{x}"
         );
     }
+}
+
+/// Penetration depth of two boxes: the least overlap along the normals of faces and the products of two edges.
+fn depth_of_boxes(halves: [[f64; 3]; 2], pose: &Pose) -> f64 {
+    let matrix = pose.rotation.to_rotation_matrix();
+    let still = [0, 1, 2].map(|axis| nalgebra::Vector3::ith(axis, 1.0));
+    let turned = still.map(|edge: nalgebra::Vector3<f64>| matrix * edge);
+    let products = still.iter().flat_map(|a| turned.map(|b| a.cross(&b)));
+    let axes = still.into_iter().chain(turned).chain(products);
+    let axes = axes.filter_map(|axis| axis.try_normalize(1e-6));
+    let overlap = |axis: nalgebra::Vector3<f64>| {
+        let reach = |half: &[f64; 3], edges: &[nalgebra::Vector3<f64>; 3]| {
+            let parts = half.iter().zip(edges);
+            parts
+                .map(|(half, edge)| half * axis.dot(edge).abs())
+                .sum::<f64>()
+        };
+        reach(&halves[0], &still) + reach(&halves[1], &turned) - axis.dot(&pose.translation).abs()
+    };
+    axes.map(overlap).fold(f64::INFINITY, f64::min)
+}
+
+/// Depths of boxes are found, not only bounded, and an exchange of the bodies does not change them.
+#[test]
+fn penetration_depth_of_boxes() {
+    let halves = [[1.5, 1.0, 0.5], [1.0, 1.0, 1.0]];
+    let scene = halves.map(|half| solid(&[(half, false)], 16));
+    let turned_round = [scene[1].clone(), scene[0].clone()];
+    let (mut hits, mut exact) = (0, 0);
+    for step in 0..60 {
+        let part = |by: f64| 2.0 * (f64::from(step) * by).fract() - 1.0;
+        let rotation = [part(0.8191), part(0.671), part(0.5497), part(0.4503)];
+        let pose = Pose::from_parts(
+            rotation,
+            [2.0 * part(0.31), 1.7 * part(0.77), 1.5 * part(0.19)],
+        );
+        let depth = depth_of_boxes(halves, &pose);
+        let (found, bounds) = ask(&scene, &pose);
+        assert_eq!(
+            found.verdict == Verdict::Hit,
+            depth > 0.0,
+            "{step}: {depth}"
+        );
+        if depth <= 0.0 {
+            continue;
+        }
+        let (_, back) = ask(&turned_round, &pose.inverse());
+        assert!(
+            bounds.low <= -depth * (1.0 - 1e-12) && -depth <= bounds.high + 1e-12,
+            "{step}"
+        );
+        assert!(
+            -bounds.low <= 1.5 * depth + 1e-9,
+            "{step}: {bounds:?} {depth}"
+        );
+        assert!(
+            (back.low - bounds.low).abs() <= 0.05 * depth + 1e-9,
+            "{step}: {back:?} {bounds:?}"
+        );
+        hits += 1;
+        exact += usize::from(-bounds.low < 1.01 * depth);
+    }
+    assert!(hits > 20 && 10 * exact > 9 * hits, "{exact} of {hits}");
 }
 
 /// A longer unit and another place change nothing but the digits that they cost.

@@ -20,6 +20,7 @@
 //! volume and nesting. [`SurfacePairs`] compares the surfaces of two solids at a pose.
 
 mod contact;
+mod exact_solid;
 mod read;
 mod repair;
 mod report;
@@ -28,10 +29,12 @@ mod slivers;
 mod solid;
 mod surface;
 mod triangle_mesh;
+mod triangle_pair;
 mod triangle_tree;
 pub(crate) mod winding;
 
-pub use self::contact::{ClosestPoints, ExactSolid, Indefinite, MeshContact, SurfacePairs};
+pub use self::contact::{ClosestPoints, SurfacePairs};
+pub use self::exact_solid::{ExactSolid, Indefinite};
 pub use self::read::{MeshFormat, file_bytes, from_triangles, parse, read, read_bytes};
 pub use self::report::{Figure, MeshReport};
 pub use self::shared_region::{SharedRegion, SharedRegions};
@@ -39,3 +42,4 @@ pub use self::solid::{Frame, Solid};
 pub use self::surface::SurfaceSample;
 pub(crate) use self::surface::{Probe, is_beside, surface_pieces};
 pub use self::triangle_mesh::Mesh;
+pub use self::triangle_pair::MeshContact;

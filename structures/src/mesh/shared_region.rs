@@ -23,10 +23,10 @@
 //! All this needs signs that rounding cannot change. If a pair of triangles has others, as flush faces have, the second
 //! solid is moved by a small part of its size and the sums are made again. The bound covers that.
 
-use crate::mesh::contact::{
-    Branch, End, ExactSolid, Place, Relation, SurfacePairs, Triangle, relation,
-};
+use crate::mesh::contact::{Place, SurfacePairs};
+use crate::mesh::exact_solid::{Branch, ExactSolid};
 use crate::mesh::triangle_mesh::doubled_normal;
+use crate::mesh::triangle_pair::{End, Relation, Triangle, relation};
 use crate::motion::Motion;
 use crate::vector::{add, along, cross, dot, norm, scale, subtract};
 
