@@ -68,21 +68,35 @@ impl Place {
         [0, 1, 2].map(|axis| dot(self.rows.map(|row| row[axis]), way))
     }
 
-    /// Largest gap of the boxes of two nodes along any of their axes: the nodes are no closer. Negative if they overlap.
-    fn gap(&self, [a, b]: [&Bounds; 2]) -> f64 {
+    /// A lower bound of the distance of what two boxes hold: that of either box and the one along its axes about the other.
+    /// Below zero by how much they overlap; any bound above `margin` will do.
+    fn gap(&self, [a, b]: [&Bounds; 2], margin: f64) -> f64 {
         let middle = |(low, high): &Bounds| [0, 1, 2].map(|i| 0.5 * (low[i] + high[i]));
         let half = |(low, high): &Bounds| [0, 1, 2].map(|i| 0.5 * (high[i] - low[i]));
         let (first, second) = (half(a), half(b));
         let way = subtract(self.apply(middle(b)), middle(a));
         let absolute = self.rows.map(|row| row.map(f64::abs));
-        let (inverse, mut gap) = (1.0 / self.ratio, f64::NEG_INFINITY);
-        for i in 0..3 {
-            gap = gap.max(way[i].abs() - first[i] - dot(absolute[i], second));
+        let along_first = [0, 1, 2].map(|i| way[i].abs() - first[i] - dot(absolute[i], second));
+        let bound = between_boxes(along_first) - 8.0 * self.delta;
+        if bound > margin {
+            return bound;
+        }
+        let inverse = 1.0 / self.ratio;
+        let along_second = [0, 1, 2].map(|i| {
             let along = dot(self.rows.map(|row| row[i]), way).abs();
             let reach = dot(absolute.map(|row| row[i]), first);
-            gap = gap.max((along - reach) * inverse - self.ratio * second[i]);
-        }
-        gap - 4.0 * self.delta
+            (along - reach) * inverse - self.ratio * second[i]
+        });
+        bound.max(between_boxes(along_second) - 8.0 * self.delta)
+    }
+}
+
+/// Distance of two boxes along common axes from their gaps along each; the largest of these if none is above zero.
+fn between_boxes(gaps: [f64; 3]) -> f64 {
+    let beyond = gaps.map(|gap| gap.max(0.0));
+    match dot(beyond, beyond) {
+        0.0 => gaps[0].max(gaps[1]).max(gaps[2]),
+        square => square.sqrt(),
     }
 }
 
@@ -184,7 +198,10 @@ impl SurfacePairs {
         mut found: impl FnMut([&(usize, Triangle); 2]) -> bool,
     ) {
         let [a, b] = solids.map(Solid::boxes);
-        let gap = |[i, j]: [u32; 2]| place.gap([&a[i as usize].known, &b[j as usize].known]);
+        let gap = |[i, j]: [u32; 2]| {
+            let nodes = [&a[i as usize].known, &b[j as usize].known];
+            place.gap(nodes, margin())
+        };
         self.open.clear();
         self.open.push((gap([0, 0]), [0, 0]));
         while let Some((least, nodes)) = self.open.pop() {
@@ -198,13 +215,16 @@ impl SurfacePairs {
                     let moved = (*number, place.moved(*triangle));
                     let (low, high) = bounds(moved.1);
                     for triangle in firsts {
-                        let reach = margin() + 4.0 * place.delta;
-                        let near = |axis: usize| {
+                        let reach = margin() + 8.0 * place.delta;
+                        let mut square = 0.0;
+                        let near = (0..3).all(|axis| {
                             let [p, q, r] = triangle.1.map(|corner| corner[axis]);
-                            p.min(q).min(r) - high[axis] <= reach
-                                && low[axis] - p.max(q).max(r) <= reach
-                        };
-                        if near(0) && near(1) && near(2) && !found([triangle, &moved]) {
+                            let before = p.min(q).min(r) - high[axis];
+                            let gap = before.max(low[axis] - p.max(q).max(r));
+                            square += gap.max(0.0).powi(2);
+                            gap <= reach && square <= reach * reach
+                        });
+                        if near && !found([triangle, &moved]) {
                             return;
                         }
                     }
