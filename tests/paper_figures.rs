@@ -316,7 +316,7 @@ fn sums_of_boxes_are_the_box_to_both_eps() {
     let epsilon = 0.5 * 3f64.sqrt() / (per_axis - 1) as f64;
     let boxes = halves.map(|half| {
         let mesh = cuboid(half);
-        let (body, nodes) = sampled(&mesh, 1.0, per_axis).unwrap();
+        let (body, nodes) = sampled(&mesh, 1.0, per_axis, 0.25).unwrap();
         (body.knots(), nodes)
     });
     let [(first, first_nodes), (second, second_nodes)] = &boxes;

@@ -1,4 +1,4 @@
-//! Table 1 and Figures 5 to 9 of Behandish and Ilieş (CAD 70, 2016) on the paper's grid sizes: the Stanford bunny
+//! Table 1 and Figures 5 to 9 and 11 of Behandish and Ilieş (CAD 70, 2016) on the paper's grid sizes: the Stanford bunny
 //! against a keyed peg.
 //!
 //! `cargo bench --bench paper_figures` prints the tables. It writes them (Markdown, CSV) and the pictures (SVG, PNG)
@@ -15,6 +15,7 @@
 //! - Figure 7 ([`figure7`]): the gap function by FFT, and its truncation to m' modes.
 //! - Figure 8 ([`figure8`]): a body's spectrum by rasterising and FFT, or from its balls by direct and fast transforms.
 //! - Figure 9 ([`figure9`]): one configuration from m' modes.
+//! - Figure 11 ([`figure11`]): the bunny's balls by grid and protrusion factor.
 //!
 //! Everything timed runs on one thread in double precision; times are processor time, the least of several runs.
 
@@ -22,12 +23,14 @@ mod crossing;
 #[path = "../../structures/examples/docking_parts/mod.rs"]
 #[allow(dead_code)] // Only the peg is used.
 mod docking_parts;
+mod figure11;
 mod figure5;
 mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
 mod minkowski;
+mod panels;
 mod report;
 mod scene;
 mod sections;
@@ -45,7 +48,7 @@ use std::io;
 use std::path::PathBuf;
 use whole::Whole;
 
-/// The paper's Table 1 and Figures 5 to 9, done again.
+/// The paper's Table 1 and Figures 5 to 9 and 11, done again.
 #[derive(Parser)]
 struct Options {
     /// Folder for tables and pictures.
@@ -59,7 +62,8 @@ struct Options {
           value_parser = clap::value_parser!(u32).range(9..=24))]
     grids: Vec<u32>,
     /// Figures to do.
-    #[arg(long, value_delimiter = ',', default_value = "5,6,7,8,9", value_parser = clap::value_parser!(u32).range(5..=9))]
+    #[arg(long, value_delimiter = ',', default_value = "5,6,7,8,9,11",
+          value_parser = clap::value_parser!(u32).range(5..=11))]
     figures: Vec<u32>,
     /// What Cargo passes to every benchmark.
     #[arg(long, hide = true)]
@@ -99,7 +103,15 @@ fn main() -> Result<(), Box<dyn Error>> {
     if options.figures.contains(&6) {
         figure6::figure(&scenes).write(&options.out, images)?;
     }
-    if options.figures.iter().any(|figure| *figure > 6) {
+    if options.figures.contains(&11) {
+        let per_axis: Vec<usize> = scenes.iter().map(|scene| scene.per_axis).collect();
+        write_picture("fig11", &figure11::picture(&per_axis)?, &options)?;
+    }
+    if options
+        .figures
+        .iter()
+        .any(|figure| (7..=9).contains(figure))
+    {
         correlate(&scenes, &options)?;
     }
     eprintln!("written to {}", options.out.display());

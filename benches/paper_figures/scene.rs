@@ -39,15 +39,14 @@ pub struct Scene {
 impl Scene {
     /// Samples both with the spacing of `per_axis` nodes along the bunny's longest edge.
     pub fn new(per_axis: usize) -> Result<Self, Box<dyn Error>> {
-        let bunny = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."))
-            .join("structures/examples/bunny.obj");
-        let (mesh, _) = read(&bunny)?;
-        let (bunny, nodes) = sampled(&mesh, 1.0, per_axis)?;
+        let mesh = bunny_mesh()?;
+        let mu = DecompositionOptions::default().mu;
+        let (bunny, nodes) = sampled(&mesh, 1.0, per_axis, mu)?;
         let nodes_along = |edge: f64| 1 + (edge * (per_axis - 1) as f64).round() as usize;
-        let (small, small_nodes) = sampled(&mesh, SMALL, nodes_along(SMALL))?;
+        let (small, small_nodes) = sampled(&mesh, SMALL, nodes_along(SMALL), mu)?;
         let part = peg_and_hole(0.05).ligand;
         let (peg, _) = from_triangles(&part.positions, &part.triangles)?;
-        let (mut peg, mut peg_nodes) = sampled(&peg, PEG, nodes_along(PEG))?;
+        let (mut peg, mut peg_nodes) = sampled(&peg, PEG, nodes_along(PEG), mu)?;
         let turn = UnitQuaternion::from_euler_angles(0.3, -0.4, 1.2);
         for place in peg.centers.iter_mut().chain(&mut peg_nodes) {
             *place = (turn * Vector3::from(*place)).into();
@@ -69,14 +68,28 @@ impl Scene {
     }
 }
 
+fn bunny_mesh() -> Result<Mesh, Box<dyn Error>> {
+    let root = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/.."));
+    Ok(read(&root.join("structures/examples/bunny.obj"))?.0)
+}
+
+/// The bunny's set A3 at a protrusion factor.
+pub fn bunny_balls(per_axis: usize, mu: f64) -> Result<Body, Box<dyn Error>> {
+    Ok(sampled(&bunny_mesh()?, 1.0, per_axis, mu)?.0)
+}
+
 /// The set A3 of a mesh scaled to a longest edge, and the nodes inside.
 pub fn sampled(
     mesh: &Mesh,
     edge: f64,
     per_axis: usize,
+    mu: f64,
 ) -> Result<(Body, Vec<Node>), Box<dyn Error>> {
     let solid = Solid::new(mesh)?;
-    let method = Method::BehandishIlies(DecompositionOptions::default());
+    let method = Method::BehandishIlies(DecompositionOptions {
+        mu,
+        ..DecompositionOptions::default()
+    });
     let sampling = sample(&solid, per_axis, method)?;
     let frame = solid.frame();
     let balls = sampling.sets.iter().find(|set| set.name == SetName::A3);

@@ -191,6 +191,7 @@ fn main() {
         for (name, method, theirs) in [
             ("W&Z packing", Method::WellerZachmann, paper.wz.to_string()),
             ("octree", Method::Octree, String::new()),
+            ("medial axis", Method::MedialAxis, String::new()),
             ("voxels", Method::Voxels, paper.inside.to_string()),
         ] {
             let run = run(&solid, per_axis, method);

@@ -441,11 +441,11 @@ fn packed_balls_lie_inside_and_do_not_overlap() {
 }
 
 #[test]
-fn octree_balls_and_voxels_cover_and_stay_near() {
+fn octree_medial_balls_and_voxels_cover_and_stay_near() {
     let solid = cuboid([-0.5; 3], [0.5; 3]).solid();
     for n in [16, 21] {
         let mut counts = Vec::new();
-        for method in [Method::Voxels, Method::Octree] {
+        for method in [Method::Voxels, Method::Octree, Method::MedialAxis] {
             let sampling = sample(&solid, n, method).unwrap();
             let fit = HausdorffMeter::new(&solid, &sampling.field).measure(&sampling.sets[0].balls);
             assert_eq!(fit.nodes_missed, 0);
@@ -454,7 +454,15 @@ fn octree_balls_and_voxels_cover_and_stay_near() {
         }
         assert_eq!(counts[0], (n - 2usize).pow(3));
         assert!(counts[1] < counts[0] / 2, "{counts:?}");
+        assert!(counts[2] < counts[1], "{counts:?}");
     }
+    // The medial axis of a rod is its line and those of its corners: the largest balls touch four faces.
+    let rod = cuboid([-1.0, -0.25, -0.25], [1.0, 0.25, 0.25]).solid();
+    let sampling = sample(&rod, 33, Method::MedialAxis).unwrap();
+    let (grid, balls) = (sampling.field.grid, &sampling.sets[0].balls);
+    let most = balls.iter().map(|ball| ball.radius).fold(0.0, f64::max);
+    let half = 0.25 * grid.half() + grid.epsilon();
+    assert!((most / half - 1.0).abs() < 0.01, "{most} {half}");
 }
 
 #[test]

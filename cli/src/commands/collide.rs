@@ -320,6 +320,13 @@ fn one_pose(report: &CollisionReport) -> String {
             Figure(bounds.high)
         ));
     }
+    if let Some(tolerance) = report.pose_tolerance.filter(|&tolerance| tolerance > 0.0) {
+        lines.push(format!(
+            "Every pose within {} of this one is {}, too (by sqrt(2 angle² + shift²), in radians and the unit of length)",
+            Figure(tolerance),
+            report.verdict.name()
+        ));
+    }
     if let Some(volume) = report.shared_volume {
         lines.push(format!(
             "Shared volume: {} to {}",
@@ -375,11 +382,11 @@ fn impact_text(impact: &Impact, band: f64) -> String {
 
 /// The columns, in order.
 #[rustfmt::skip]
-const COLUMNS: [&str; 31] = [
+const COLUMNS: [&str; 32] = [
     "pose", "qw", "qx", "qy", "qz", "tx", "ty", "tz", "verdict", "certified_by", "distance_low", "distance_high",
-    "witness_a_x", "witness_a_y", "witness_a_z", "witness_b_x", "witness_b_y", "witness_b_z", "overlap_volume",
-    "overlap_volume_bound", "overlap_energy", "force_x", "force_y", "force_z", "torque_x", "torque_y", "torque_z",
-    "energy_bound", "ball_pairs", "modes", "microseconds",
+    "witness_a_x", "witness_a_y", "witness_a_z", "witness_b_x", "witness_b_y", "witness_b_z", "pose_tolerance",
+    "overlap_volume", "overlap_volume_bound", "overlap_energy", "force_x", "force_y", "force_z", "torque_x", "torque_y",
+    "torque_z", "energy_bound", "ball_pairs", "modes", "microseconds",
 ];
 
 /// The values of each row; `null` for quantities that were not computed. Poses are numbered from 1.
@@ -403,6 +410,7 @@ fn table_rows<'a>(
         row.push(json!(distance.map(|distance| distance.high)));
         row.extend(witness(0));
         row.extend(witness(1));
+        row.push(json!(report.pose_tolerance));
         row.push(json!(volume.map(|volume| volume.value)));
         row.push(json!(volume.map(|volume| volume.bound)));
         row.push(json!(contact.map(|contact| contact.energy)));

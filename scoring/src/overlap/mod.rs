@@ -28,7 +28,7 @@
 //! assert!(sum.sum().energy < pairs.energy);
 //! // The lowest 2000 modes, until they certify the hit.
 //! let modes = OverlapModes::new(&kernel, &a, &b, 2000)?;
-//! let hit = modes.start(&pose, &mut modes.workspace()).advance(|| false, true);
+//! let hit = modes.start(&pose, &mut modes.workspace()).advance(|sum| sum.certifies_hit());
 //! assert!(hit.certifies_hit());
 //! assert!((hit.energy - pairs.energy).abs() <= hit.tail + hit.rounding);
 //! # Ok::<(), Box<dyn std::error::Error>>(())

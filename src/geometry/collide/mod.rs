@@ -147,6 +147,9 @@ pub struct CollisionReport {
     pub certificate: Certificate,
     /// Bounds of the signed distance, if requested.
     pub distance: Option<DistanceBounds>,
+    /// Distance in SE(3) ([`super::motion`]) within which every pose has the same verdict, if distances are requested:
+    /// zero if that is undecided. It is a lower bound, see [`Collision::tolerance`].
+    pub pose_tolerance: Option<f64>,
     /// Shared volume, if requested.
     pub shared_volume: Option<SharedVolume>,
     /// Overlap energy, force and torque, if requested.
@@ -273,6 +276,23 @@ impl<'a> Collision<'a> {
         self.exact().map_or(self.band(), |_| 0.0)
     }
 
+    /// Distance in SE(3) within which every pose has the verdict of a pose with these bounds.
+    ///
+    /// Between poses whose rotations differ by theta and whose translations by t, a point of B at most rho from the
+    /// origin of its file moves by no more than t + rho theta. That is at most sqrt(1 + rho^2 / 2) times the distance
+    /// sqrt(2 theta^2 + t^2). Free solids stay apart, and the deepest pair of inner balls in each other, until that
+    /// exceeds their gap or depth.
+    fn tolerance(&self, verdict: Verdict, bounds: &DistanceBounds) -> f64 {
+        let moved = self.solids[1];
+        let rho = moved.reach_from(moved.origin().map(|part| -part));
+        let slack = match verdict {
+            Verdict::Free => bounds.low - self.margin,
+            Verdict::Hit => self.margin - bounds.high,
+            Verdict::Undecided => 0.0,
+        };
+        slack.max(0.0) / (0.5 * rho * rho + 1.0).sqrt()
+    }
+
     /// Results for one pose.
     ///
     /// # Errors
@@ -370,7 +390,8 @@ pub struct Workspace {
     regions: SharedRegions,
     pairs: MeetingPairs,
     marks: [Vec<bool>; 2],
-    modes: Option<ModesWorkspace>,
+    /// For the largest balls, and for all.
+    modes: [Option<ModesWorkspace>; 2],
 }
 
 /// One pose of a [`Collision`], with its deadline and counters.
@@ -404,6 +425,8 @@ impl CollisionQuery<'_> {
         CollisionReport {
             verdict: certificate.verdict(),
             certificate,
+            pose_tolerance: distance
+                .map(|bounds| self.collision.tolerance(certificate.verdict(), &bounds)),
             distance,
             shared_volume,
             contact,

@@ -10,6 +10,7 @@ use knotdock_structures::sampling::ball_tree::BallTree;
 
 use super::{Certificate, Collision, CollisionReport, DistanceBounds, Method, Verdict};
 use crate::geometry::bracket::Bracket;
+use crate::geometry::motion::geodesic_ball;
 use crate::geometry::obstacle::{mirrored, sum};
 
 fn balls(list: &[([f64; 3], f64)]) -> BallSolid {
@@ -206,6 +207,35 @@ fn far_small_and_uneven_solids() {
             assert_eq!(found.verdict, verdict, "{offset} {size} {gap}");
             assert!((bounds.high / size - gap).abs() < 1e-8 + 1e-9 * offset / size);
         }
+    }
+}
+
+/// Poses of the ball of SE(3) about a pose that a report promises have its verdict, and of one four times as large some
+/// have not.
+#[test]
+fn pose_tolerances_hold() {
+    let boxes = [[1.0, 0.6, 0.4], [0.7, 0.3, 0.9]].map(|half| solid(&[(half, false)], 16));
+    let unions = [ball(1.0), balls(&[([0.3; 3], 0.5), ([1.0, 0.0, 0.0], 0.2)])];
+    for (scene, margin) in [(&boxes, 0.0), (&boxes, 0.2), (&unions, 0.0)] {
+        let ask = collision(scene).margin(margin).distance(true);
+        let mut larger = 0;
+        for (number, step) in [0.2, 0.6, 1.0, 1.6, 1.9, 2.2, 3.0].into_iter().enumerate() {
+            let turn = [0.8, 0.1 * number as f64, -0.3, 0.2];
+            let pose = Pose::from_parts(turn, [step, 0.2 * step, -0.1 * step]);
+            let report = ask.at(&pose).unwrap();
+            let tolerance = report.pose_tolerance.unwrap();
+            assert_eq!(tolerance > 0.0, report.verdict != Verdict::Undecided);
+            let others = |radius: f64| {
+                let poses = geodesic_ball(&pose, radius, 200);
+                let reports = ask.at_each(&poses).unwrap().into_iter();
+                reports
+                    .filter(|other| other.verdict != report.verdict)
+                    .count()
+            };
+            assert_eq!(others((1.0 - 1e-9) * tolerance), 0, "{margin} {step}");
+            larger += others(4.0 * tolerance);
+        }
+        assert!(larger > 0, "no tolerance is anywhere near the true one");
     }
 }
 

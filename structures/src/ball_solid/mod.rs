@@ -41,7 +41,7 @@ use std::sync::Arc;
 use crate::ball::Ball;
 use crate::knots::{Knots, KnotsError};
 use crate::mesh::ExactSolid;
-use crate::vector::{add, norm, scale, subtract};
+use crate::vector::{add, distance, scale, subtract};
 
 /// A solid between two sets of balls.
 #[derive(Clone, Debug)]
@@ -127,7 +127,12 @@ impl BallSolid {
 
     /// Radius of a ball about the origin of the stored coordinates that holds the outer balls.
     pub fn reach(&self) -> f64 {
-        let reach = |ball: &Ball| norm(ball.center) + ball.radius;
+        self.reach_from([0.0; 3])
+    }
+
+    /// Radius of a ball about another point of these coordinates that holds the outer balls.
+    pub fn reach_from(&self, point: [f64; 3]) -> f64 {
+        let reach = |ball: &Ball| distance(ball.center, point) + ball.radius;
         self.inner().iter().map(reach).fold(0.0, f64::max) + self.epsilon
     }
 }

@@ -34,7 +34,7 @@ pub fn feature_size(solid: &Solid, field: &DepthField) -> f64 {
     let sampled: Vec<usize> = near.into_iter().step_by(stride).collect();
     let mut radii: Vec<f64> = sampled
         .par_iter()
-        .map(|&node| touching_radius(solid, field.grid.node(node), field.grid.half()))
+        .map(|&node| touching(solid, field.grid.node(node), field.grid.half()).0)
         .collect();
     if radii.is_empty() {
         return field.depth.iter().copied().fold(0.0, f64::max);
@@ -43,18 +43,19 @@ pub fn feature_size(solid: &Solid, field: &DepthField) -> f64 {
     *radii.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
-/// Radius of the largest ball inside that touches the surface at the point nearest to `inside`, no larger than `most`.
-fn touching_radius(solid: &Solid, inside: [f64; 3], most: f64) -> f64 {
+/// Radius and centre of the largest ball inside that touches the surface at the point nearest to `inside`, no larger
+/// than `most`.
+pub(super) fn touching(solid: &Solid, inside: [f64; 3], most: f64) -> (f64, [f64; 3]) {
     let foot = solid.nearest(inside);
     let step = subtract(inside, foot);
     let depth = norm(step);
     if depth <= 0.0 {
-        return 0.0;
+        return (0.0, inside);
     }
+    let center = |radius: f64| along(foot, radius / depth, step);
     let fits = |radius: f64| {
-        let center = along(foot, radius / depth, step);
         // Past a thin wall the surface is far, too.
-        solid.distance(center) >= TOUCHING * radius && solid.is_inside(center)
+        solid.distance(center(radius)) >= TOUCHING * radius && solid.is_inside(center(radius))
     };
     // The ball about `inside` itself fits, and of balls that touch at one point each holds all smaller ones.
     let (mut low, mut high) = (depth, most.max(depth));
@@ -66,7 +67,7 @@ fn touching_radius(solid: &Solid, inside: [f64; 3], most: f64) -> f64 {
             high = middle;
         }
     }
-    0.5 * (low + high)
+    (0.5 * (low + high), center(low))
 }
 
 #[cfg(test)]

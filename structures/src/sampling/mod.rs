@@ -12,9 +12,10 @@
 //! - [`decomposition`]: Behandish and Ilieş' Algorithm 1.
 //! - [`packing`]: Weller and Zachmann's distance-greedy packing.
 //! - [`octree`], and [`Method::Voxels`]: balls about the cells of an octree, and about voxels.
+//! - [`medial`]: balls about points of the medial axis.
 //! - [`lattice`]: balls of one radius, for correlating solids at a known resolution.
 //!
-//! The first four share one [`grid`], cover the same nodes X and are measured by [`hausdorff`]. [`feature_size`] says
+//! The first five share one [`grid`], cover the same nodes X and are measured by [`hausdorff`]. [`feature_size`] says
 //! how thick a solid is.
 
 pub mod ball_tree;
@@ -25,6 +26,7 @@ pub mod feature_size;
 pub mod grid;
 pub mod hausdorff;
 pub mod lattice;
+pub mod medial;
 pub mod octree;
 mod outward;
 pub mod packing;

@@ -11,7 +11,7 @@ use crate::sampling::cover::Covering;
 use crate::sampling::decomposition::{Decomposition, DecompositionOptions, decompose_in_order};
 use crate::sampling::grid::{DepthField, Grid};
 use crate::sampling::skeletal_density::{Priority, priorities};
-use crate::sampling::{octree, packing};
+use crate::sampling::{medial, octree, packing};
 
 /// Why a solid could not be sampled.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
@@ -32,6 +32,8 @@ pub enum Method {
     WellerZachmann,
     /// Balls about octree cells: see [`super::octree`].
     Octree,
+    /// Balls about points of the medial axis: see [`super::medial`].
+    MedialAxis,
     /// Uniform sampling, B&I's own baseline: about every inside node the ball of radius eps that holds the cube of one
     /// spacing.
     Voxels,
@@ -51,6 +53,8 @@ pub enum SetName {
     Wz,
     /// The one set of the octree.
     Octree,
+    /// The one set of the medial axis.
+    Medial,
     /// The one set of the voxels.
     Voxels,
 }
@@ -141,6 +145,10 @@ pub fn sample(solid: &Solid, per_axis: usize, method: Method) -> Result<Sampling
         Method::Octree => {
             let balls = octree::octree(solid, &field);
             vec![set(SetName::Octree, balls, step("octree"))]
+        }
+        Method::MedialAxis => {
+            let balls = medial::medial_balls(solid, &field);
+            vec![set(SetName::Medial, balls, step("medial axis"))]
         }
         Method::Voxels => {
             let radius = field.grid.epsilon();

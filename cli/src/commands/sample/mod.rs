@@ -100,6 +100,8 @@ enum MethodName {
     Wz,
     /// Balls about the cells of an octree.
     Octree,
+    /// Largest balls inside, about points of the medial axis, grown by eps.
+    Medial,
     /// A ball about every voxel.
     Voxels,
 }
@@ -329,6 +331,7 @@ impl Sample {
             }
             MethodName::Wz => Method::WellerZachmann,
             MethodName::Octree => Method::Octree,
+            MethodName::Medial => Method::MedialAxis,
             MethodName::Voxels => Method::Voxels,
         })
     }

@@ -186,11 +186,11 @@ impl OverlapModes {
         work: &mut ModesWorkspace,
     ) -> ModesOverlap {
         let mut sum = ModesSum::new(self, pose, Some(about), work);
-        sum.advance(|| false, false)
+        sum.advance(|_| false)
     }
 
-    /// Energy and force at a pose from ever more modes, lowest frequencies first, until `stop` or a certified hit:
-    /// [`ModesSum::advance`] goes on where it stopped.
+    /// Energy and force at a pose from ever more modes, lowest frequencies first: [`ModesSum::advance`] goes on where it
+    /// stopped.
     pub fn start<'a>(&'a self, pose: &Pose, work: &'a mut ModesWorkspace) -> ModesSum<'a> {
         ModesSum::new(self, pose, None, work)
     }

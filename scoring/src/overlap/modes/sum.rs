@@ -114,14 +114,10 @@ impl<'a> ModesSum<'a> {
         self.sum
     }
 
-    /// Adds block after block until all modes are in, `stop` returns true (called before each block), or with `early` until a
-    /// hit is certified. Call it again to go on.
-    pub fn advance(&mut self, mut stop: impl FnMut() -> bool, early: bool) -> ModesOverlap {
-        loop {
-            let certain = early && self.sum.certifies_hit();
-            if self.sum.complete || certain || stop() {
-                break;
-            }
+    /// Adds block after block until all modes are in or `stop` returns true, which is called before each with the sum so
+    /// far. Call it again to go on.
+    pub fn advance(&mut self, mut stop: impl FnMut(&ModesOverlap) -> bool) -> ModesOverlap {
+        while !self.sum.complete && !stop(&self.sum) {
             self.block();
         }
         self.sum

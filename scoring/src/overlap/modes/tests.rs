@@ -67,7 +67,7 @@ fn energies_lie_within_their_bounds() {
                 if part.complete {
                     // In pieces and at once, the same bits.
                     let mut work = modes.workspace();
-                    let whole = modes.start(&pose, &mut work).advance(|| false, false);
+                    let whole = modes.start(&pose, &mut work).advance(|_| false);
                     assert_eq!(whole, part);
                     worst = worst.max(error);
                     scale = scale.max(exact.energy);
@@ -76,7 +76,7 @@ fn energies_lie_within_their_bounds() {
                     break;
                 }
                 let mut once = false;
-                sum.advance(|| std::mem::replace(&mut once, true), false);
+                sum.advance(|_| std::mem::replace(&mut once, true));
             }
         }
         println!(
@@ -147,7 +147,9 @@ fn certificates_are_never_wrong() {
         let (mut fired, mut near) = (0, 0);
         for _ in 0..400 {
             let pose = pose(&modes, 11.0 + margin, &mut numbers);
-            let sum = modes.start(&pose, &mut work).advance(|| false, true);
+            let sum = modes
+                .start(&pose, &mut work)
+                .advance(|sum| sum.certifies_hit());
             let gap = gap(&a, &b, &pose);
             assert!(
                 !sum.certifies_hit() || gap < margin,
@@ -177,10 +179,7 @@ fn a_margin_keeps_the_integral() {
             translation: Vector3::new(d, 0.0, 0.0),
             ..Pose::identity()
         };
-        modes
-            .start(&pose, &mut work)
-            .advance(|| false, false)
-            .energy
+        modes.start(&pose, &mut work).advance(|_| false).energy
     };
     let step = 4.6 / 500.0;
     let integral: f64 = (0..500)
@@ -280,14 +279,16 @@ fn overlap_costs_of_modes() {
         let mut sum = ModesOverlap::default();
         for _ in 0..5 {
             let start = ThreadTime::now();
-            modes.start(&pose, &mut work).advance(|| false, false);
+            modes.start(&pose, &mut work).advance(|_| false);
             best[0] = best[0].min(start.elapsed().as_secs_f64());
             let start = ThreadTime::now();
             sum = modes.evaluate(&pose, [0.0; 3], &mut work);
             best[1] = best[1].min(start.elapsed().as_secs_f64());
         }
         let start = ThreadTime::now();
-        let hit = modes.start(&pose, &mut work).advance(|| false, true);
+        let hit = modes
+            .start(&pose, &mut work)
+            .advance(|sum| sum.certifies_hit());
         let early = start.elapsed();
         let [value, all] = best.map(|time| 1e6 * time);
         println!(
