@@ -6,7 +6,7 @@
 //! - `-- --out FOLDER` writes them elsewhere.
 //! - `--meshes A B` takes two other meshes than the Stanford bunny and itself.
 //! - `--accuracy` shows what the balls' accuracy costs instead: eps, undecided share, error of the force and microseconds
-//!   for grids of 2^9 to 2^18 nodes; `--images docs/images` writes its picture there as well.
+//!   for grids of 2^9 to 2^18 nodes; `--images $PWD/docs/images` writes its picture there as well.
 //! - `--python PYTHON` names the Python that has coal (scripts/checks/requirements_solids.txt); without, that of
 //!   scripts/reference_checks.sh or the system's is tried.
 //!
@@ -59,7 +59,7 @@ pub struct Options {
     #[arg(long, default_value_t = 20)]
     stride: usize,
     /// Poses of the batch.
-    #[arg(long, default_value_t = 1_000_000)]
+    #[arg(long, default_value_t = 100_000)]
     batch: usize,
     /// Python that has coal.
     #[arg(long)]

@@ -119,7 +119,7 @@ fn coal_row(line: &str) -> Result<CoalRow, String> {
 
 /// The Python of the reference checks, which has coal, where they were run; else the system's.
 pub fn python() -> PathBuf {
-    let checks = Path::new(env!("CARGO_TARGET_TMPDIR")).join("../python/solids/bin/python");
+    let checks = Path::new(env!("CARGO_TARGET_TMPDIR")).join("../python/others/bin/python");
     match checks.exists() {
         true => checks,
         false => "python3".into(),

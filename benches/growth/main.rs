@@ -4,7 +4,7 @@
 //! the folder of Cargo's temporary files.
 //!
 //! - `-- --out FOLDER` writes them elsewhere.
-//! - `--images docs/images` writes the picture to that folder as well.
+//! - `--images $PWD/docs/images` writes the picture to that folder as well.
 //!
 //! All is measured on the example pair, one quantity changed at a time ([`settings`]):
 //!

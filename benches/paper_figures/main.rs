@@ -5,7 +5,7 @@
 //! to `paper_figures` in the folder of Cargo's temporary files.
 //!
 //! - `-- --out FOLDER` writes them elsewhere.
-//! - `--images docs/images` writes the pictures to that folder as well.
+//! - `--images $PWD/docs/images` writes the pictures to that folder as well.
 //! - `--grids 12,15` takes fewer grid sizes, `--figures 5,6` fewer figures; Table 1 belongs to Figure 6.
 //!
 //! The page docs/results/paper_figures.md describes the measurements and shows the results.

@@ -22,9 +22,11 @@ pub fn drawn(panels: &[(String, Vec<Knot>)], columns: usize) -> String {
         let place = [index % columns, index / columns].map(|number| number as f64);
         svg.at([PANEL * place[0], HEIGHT * place[1]], |svg| {
             svg.text([PANEL / 2.0, PANEL + 16.0], title);
-            for [x, y, _, radius] in seen(balls, scale) {
-                svg.circle([x, y], radius, SEEN);
-            }
+            svg.styled(SEEN, |svg| {
+                for [x, y, _, radius] in seen(balls, scale) {
+                    svg.circle([x, y], radius, "");
+                }
+            });
         });
     }
     svg.finish()

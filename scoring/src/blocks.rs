@@ -7,6 +7,7 @@
 // Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
 #![allow(clippy::needless_range_loop)]
 
+use crate::distance_floors::DistanceFloors;
 use crate::vectorized::with_simd;
 use nalgebra::Vector3;
 use pulp::Simd;
@@ -79,9 +80,18 @@ pub(crate) struct Blocks {
     /// Indices of the points, block by block.
     order: Vec<usize>,
     groups: Vec<Group>,
+    floors: Option<DistanceFloors>,
 }
 
 impl Blocks {
+    /// Blocks of points that are mostly asked about places farther than `reach`, a length above zero.
+    pub fn within(points: &[Vector3<f64>], reach: f64) -> Self {
+        Self {
+            floors: Some(DistanceFloors::new(points, reach)),
+            ..Self::new(points)
+        }
+    }
+
     pub fn new(points: &[Vector3<f64>]) -> Self {
         let mut order: Vec<usize> = (0..points.len()).collect();
         halve(points, &mut order);
@@ -125,7 +135,15 @@ impl Blocks {
             blocks,
             order,
             groups,
+            floors: None,
         }
+    }
+
+    /// Whether no point can be within `reach` of `x`. `false` says nothing.
+    #[inline(always)]
+    pub fn excludes(&self, x: &[f64; 3], reach: f64) -> bool {
+        let floors = self.floors.as_ref();
+        floors.is_some_and(|floors| floors.excludes(&Vector3::from(*x), reach))
     }
 
     /// Number of blocks.
@@ -162,6 +180,9 @@ impl Blocks {
         reach: f64,
         mut visit: impl FnMut(u32),
     ) {
+        if self.excludes(x, reach) {
+            return;
+        }
         let square_reach = reach * reach;
         let everywhere = x.map(|x| simd.splat_f64s(x));
         for (group, first) in self.groups.iter().zip((0u32..).step_by(GROUP)) {
@@ -192,7 +213,6 @@ impl Blocks {
         near: &mut NearPoints,
         mut visit: impl FnMut(&NearPoints),
     ) {
-        let square_reach = reach * reach;
         let everywhere = x.map(|x| simd.splat_f64s(x));
         near.clear();
         self.visit_blocks(
@@ -200,24 +220,55 @@ impl Blocks {
             x,
             reach,
             #[inline(always)]
-            |index| {
-                let Some(block) = self.blocks.get(index as usize) else {
-                    debug_assert!(false, "a block that is not there lies within reach");
-                    return;
-                };
-                if near.is_full() {
-                    near.fill();
-                    visit(near);
-                    near.clear();
-                }
-                let squares = block.squares(simd, &everywhere);
-                near.add(index * LANES as u32, &squares, square_reach);
-            },
+            |index| self.add_near(simd, index, (&everywhere, reach), near, &mut visit),
         );
         if !near.is_empty() {
             near.fill();
             visit(near);
         }
+    }
+
+    /// As [`Self::near`] among the points of some blocks.
+    #[inline(always)]
+    pub fn near_among<S: Simd>(
+        &self,
+        simd: S,
+        blocks: &[u32],
+        (x, reach): (&[f64; 3], f64),
+        near: &mut NearPoints,
+        mut visit: impl FnMut(&NearPoints),
+    ) {
+        let everywhere = x.map(|x| simd.splat_f64s(x));
+        near.clear();
+        for &index in blocks {
+            self.add_near(simd, index, (&everywhere, reach), near, &mut visit);
+        }
+        if !near.is_empty() {
+            near.fill();
+            visit(near);
+        }
+    }
+
+    /// Adds the points of a block within reach of a place, and visits what is listed if there is no room.
+    #[inline(always)]
+    fn add_near<S: Simd>(
+        &self,
+        simd: S,
+        index: u32,
+        (x, reach): (&[S::f64s; 3], f64),
+        near: &mut NearPoints,
+        visit: &mut impl FnMut(&NearPoints),
+    ) {
+        let Some(block) = self.blocks.get(index as usize) else {
+            debug_assert!(false, "a block that is not there lies within reach");
+            return;
+        };
+        if near.is_full() {
+            near.fill();
+            visit(near);
+            near.clear();
+        }
+        near.add(index * LANES as u32, &block.squares(simd, x), reach * reach);
     }
 }
 
@@ -231,6 +282,9 @@ impl Blocks {
         near: &mut NearPoints,
         visit: impl FnMut(&NearPoints),
     ) {
+        if self.excludes(x, reach) {
+            return;
+        }
         let blocks = self;
         with_simd!(
             <'a, F: FnMut(&NearPoints)>(
@@ -242,23 +296,14 @@ impl Blocks {
 
     /// As [`Self::visit_blocks`].
     pub fn list_blocks(&self, x: &[f64; 3], reach: f64, visit: impl FnMut(u32)) {
+        if self.excludes(x, reach) {
+            return;
+        }
         let blocks = self;
         with_simd!(
             <'a, F: FnMut(u32)>(blocks: &'a Blocks, x: &'a [f64; 3], reach: f64, visit: F) -> (),
             |simd| blocks.visit_blocks(simd, x, reach, visit)
         );
-    }
-
-    /// Whether the box of a block is within `reach` of `x`; if none does, no point does.
-    pub fn may_be_within(&self, x: &[f64; 3], reach: f64) -> bool {
-        let mut within = false;
-        self.list_blocks(
-            x,
-            reach,
-            #[inline(always)]
-            |_| within = true,
-        );
-        within
     }
 }
 
@@ -441,7 +486,7 @@ mod tests {
                 let points: Vec<Vector3<f64>> = (0..count)
                     .map(|_| Vector3::new(spread * next(), spread * next(), spread * next()))
                     .collect();
-                let blocks = Blocks::new(&points);
+                for blocks in [Blocks::new(&points), Blocks::within(&points, 9.0)] {
                 let numbers = blocks.arranged(|index| index);
                 for from in [points[0], points[0] + Vector3::new(3.0, -4.0, 5.0)] {
                     let reach = 9.0;
@@ -466,7 +511,16 @@ mod tests {
                     });
                     listed.sort_unstable();
                     assert_eq!(listed, expected, "{count} points over {spread} Å");
-                    assert!(blocks.may_be_within(&x, reach) || expected.is_empty());
+                    let mut among = Vec::new();
+                    blocks.list_blocks(&x, 2.0 * reach, |block| among.push(block));
+                    let mut of_blocks = Vec::new();
+                    let near = &mut NearPoints::default();
+                    blocks.near_among(Scalar, &among, (&x, reach), near, |near| {
+                        of_blocks.extend(near.pairs().map(|(_, point)| numbers[point as usize]));
+                    });
+                    of_blocks.sort_unstable();
+                    assert_eq!(of_blocks, expected);
+                }
                 }
             }
         }

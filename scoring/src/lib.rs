@@ -47,11 +47,13 @@
 
 mod blocks;
 mod correlator;
+mod distance_floors;
 pub mod engine;
 pub mod exact;
 pub mod exact_sum;
 pub mod grid_turn;
 pub mod kernel;
+mod lanes;
 pub mod lifted_axis;
 pub mod overlap;
 pub mod peaks;

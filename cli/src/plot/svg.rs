@@ -35,6 +35,13 @@ impl Svg {
         put!(self, "</g>");
     }
 
+    /// Gives all that `draw` draws the attributes `style`.
+    pub fn styled(&mut self, style: &str, draw: impl FnOnce(&mut Self)) {
+        put!(self, "<g {style}>");
+        draw(self);
+        put!(self, "</g>");
+    }
+
     /// A line of text whose middle is at `[x, y]`.
     pub fn text(&mut self, [x, y]: [f64; 2], text: &str) {
         let escaped = text.replace('&', "&amp;").replace('<', "&lt;");

@@ -140,7 +140,10 @@ impl ExactScorer {
             .collect();
         let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
         let tables = PairTables::new(kernel, &receptor_radii, &ligand_radii);
-        let blocks = Blocks::new(&points);
+        let unfiltered_reach = largest(&receptor_radii)
+            + largest(&ligand_radii)
+            + kernel.options().slice_offsets()[2];
+        let blocks = Blocks::within(&points, kernel.reach().max(unfiltered_reach));
         Ok(Self {
             effects: effects
                 .iter()
@@ -161,9 +164,7 @@ impl ExactScorer {
                 })
                 .collect(),
             ligand_center,
-            unfiltered_reach: largest(&receptor_radii)
-                + largest(&ligand_radii)
-                + kernel.options().slice_offsets()[2],
+            unfiltered_reach,
             kernel: kernel.clone(),
         })
     }

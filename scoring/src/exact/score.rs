@@ -91,9 +91,18 @@ impl ExactScorer {
         let mut totals = [0.0; KERNELS];
         let mut terms = [0.0; Effect::ALL.len()];
         let mut near = NearPoints::default();
+        let mut active = [(&NONE, 0.0, &[][..]); MOST_TERMS];
         for (index, knot) in self.ligand.iter().enumerate() {
             let x = (rotation * knot.position + center).into();
             let starts = &self.tables.starts[knot.class];
+            let mut count = 0;
+            for term in effects {
+                if let (Some((value, row)), Some(place)) = (term.of(index), active.get_mut(count)) {
+                    *place = (term, value, row);
+                    count += 1;
+                }
+            }
+            let active = active.get(..count).unwrap_or_default();
             self.receptor.near(
                 simd,
                 &x,
@@ -101,6 +110,7 @@ impl ExactScorer {
                 &mut near,
                 #[inline(always)]
                 |near| {
+                    let mut of_terms = [0.0; MOST_TERMS];
                     let sums = self.add_up(
                         simd,
                         near,
@@ -110,23 +120,13 @@ impl ExactScorer {
                             let start = starts.get(other.class as usize)?;
                             Some((other.weight, lines((start + panel) as usize)?))
                         },
+                        active,
+                        &mut of_terms,
                     );
                     for (total, sum) in totals.iter_mut().zip(sums) {
                         *total += knot.weight * sum;
                     }
-                    for term in effects {
-                        let Some((value, row)) = term.of(index) else {
-                            continue;
-                        };
-                        let [sum] = self.add_up(
-                            simd,
-                            near,
-                            #[inline(always)]
-                            |other, panel| {
-                                let line = term.line(panel);
-                                Some((term.weight(other, row), std::array::from_ref(line)))
-                            },
-                        );
+                    for ((term, value, _), sum) in active.iter().zip(of_terms) {
                         terms[term.effect as usize] += value * sum;
                     }
                 },
@@ -135,40 +135,74 @@ impl ExactScorer {
         (totals, terms)
     }
 
-    /// Sums over the collected knots of their weights times kernels, both of which `pair` gives by knot and panel.
+    /// Sums over the collected knots of their weights times kernels: of shape, both of which `shape` gives by knot and
+    /// panel, and of some terms.
     #[inline(always)]
     fn add_up<'a, S: Simd, const KERNELS: usize>(
         &self,
         simd: S,
         near: &NearPoints,
-        pair: impl Fn(u32, u32) -> Option<(f64, &'a [Line; KERNELS])>,
+        shape: impl Fn(u32, u32) -> Option<(f64, &'a [Line; KERNELS])>,
+        terms: &[ActiveOf],
+        of_terms: &mut [f64; MOST_TERMS],
+    ) -> [f64; KERNELS] {
+        match *terms {
+            [] => self.add_up_with(simd, near, shape, [], of_terms),
+            [a] => self.add_up_with(simd, near, shape, [a], of_terms),
+            [a, b] => self.add_up_with(simd, near, shape, [a, b], of_terms),
+            [a, b, c, ..] => self.add_up_with(simd, near, shape, [a, b, c], of_terms),
+        }
+    }
+
+    /// As [`Self::add_up`]. A pair is placed once for shape and all terms.
+    #[inline(always)]
+    fn add_up_with<'a, S: Simd, const KERNELS: usize, const TERMS: usize>(
+        &self,
+        simd: S,
+        near: &NearPoints,
+        shape: impl Fn(u32, u32) -> Option<(f64, &'a [Line; KERNELS])>,
+        terms: [ActiveOf; TERMS],
+        of_terms: &mut [f64; MOST_TERMS],
     ) -> [f64; KERNELS] {
         // Two sums by name, not by index, stay in registers.
-        let zero = [[simd.splat_f64s(0.0); 4]; KERNELS];
-        let (mut even, mut odd) = (zero, zero);
+        let zero = [simd.splat_f64s(0.0); 4];
+        let (mut even, mut odd) = ([zero; KERNELS], [zero; KERNELS]);
+        let (mut even_terms, mut odd_terms) = ([zero; TERMS], [zero; TERMS]);
         for (squares, knots) in near.eights() {
             let places = self.tables.place(simd, squares);
             for lane in (0..LANES).step_by(2) {
-                for (lane, sums) in [(lane, &mut even), (lane + 1, &mut odd)] {
-                    if let Some((weight, lines)) = pair(knots[lane], places.panel(lane)) {
-                        let powers = Powers::of(simd, &places, lane, weight);
+                for (lane, sums, of_terms) in [
+                    (lane, &mut even, &mut even_terms),
+                    (lane + 1, &mut odd, &mut odd_terms),
+                ] {
+                    let (knot, panel) = (knots[lane], places.panel(lane));
+                    let powers = Powers::of(simd, &places, lane);
+                    if let Some((weight, lines)) = shape(knot, panel) {
                         for (sum, line) in sums.iter_mut().zip(lines) {
-                            powers.add(simd, line, sum);
+                            powers.add(simd, weight, line, sum);
                         }
                     } else {
                         debug_assert!(false, "a knot, class or panel that is not there");
                     }
+                    for (sum, (term, _, row)) in of_terms.iter_mut().zip(&terms) {
+                        powers.add(simd, term.weight(knot, row), term.line(panel), sum);
+                    }
                 }
             }
         }
-        std::array::from_fn(|kernel| {
+        let both = |even: [S::f64s; 4], odd: [S::f64s; 4]| {
             let mut four = [0.0; 4];
-            let sums = even[kernel].into_iter().zip(odd[kernel]);
-            for (total, (even, odd)) in vectors_mut::<S>(&mut four).iter_mut().zip(sums) {
+            for (total, (even, odd)) in
+                (vectors_mut::<S>(&mut four).iter_mut()).zip(even.into_iter().zip(odd))
+            {
                 *total = simd.add_f64s(even, odd);
             }
             (four[0] + four[2]) + (four[1] + four[3])
-        })
+        };
+        for (sum, (even, odd)) in of_terms.iter_mut().zip(even_terms.into_iter().zip(odd_terms)) {
+            *sum = both(even, odd);
+        }
+        std::array::from_fn(|kernel| both(even[kernel], odd[kernel]))
     }
 
     /// G of B&I's own kernel, evaluated directly.
@@ -221,6 +255,14 @@ impl ExactScorer {
     }
 }
 
+/// A term in which a ligand knot takes part, with the knot's value and matrix row.
+type ActiveOf<'a> = (&'a PairTerm, f64, &'a [f64]);
+
+/// Terms beside shape.
+const MOST_TERMS: usize = Effect::ALL.len() - 1;
+/// A term without knots.
+static NONE: PairTerm = PairTerm::NONE;
+
 /// Slices as one sum.
 fn weighted(weights: [f64; 3], slices: [f64; 3]) -> f64 {
     (0..3).map(|i| weights[i] * slices[i]).sum()
@@ -228,7 +270,7 @@ fn weighted(weights: [f64; 3], slices: [f64; 3]) -> f64 {
 
 /// Powers of the argument of a pair, as vectors of which the first ones make four numbers.
 struct Powers<S: Simd> {
-    /// 1, u, u^2, u^3, times the pair's weight.
+    /// 1, u, u^2, u^3.
     low: [S::f64s; 4],
     /// u^4.
     fourth: S::f64s,
@@ -241,11 +283,10 @@ impl<S: Simd> Powers<S> {
     /// The powers come from numbers that are spread over a vector: single numbers that are stored side by side and
     /// loaded as a vector stall, until all of them have left the store buffer.
     #[inline(always)]
-    fn of(simd: S, places: &Places, lane: usize, weight: f64) -> Self {
+    fn of(simd: S, places: &Places, lane: usize) -> Self {
         let (first, square) = (places.first(lane), places.square(lane));
         let (first, square) = (simd.splat_f64s(first), simd.splat_f64s(square));
-        let weight = simd.splat_f64s(weight);
-        let mut low = [weight; 4];
+        let mut low = [first; 4];
         for (index, low) in low.iter_mut().enumerate().take(Self::VECTORS) {
             let pick = |of: &'static [f64; 4]| vectors::<S>(of)[index];
             // 1, u, 1, u and 1, 1, u^2, u^2.
@@ -259,7 +300,7 @@ impl<S: Simd> Powers<S> {
                 pick(&[0.0, 0.0, 1.0, 1.0]),
                 pick(&[1.0, 1.0, 0.0, 0.0]),
             );
-            *low = simd.mul_f64s(simd.mul_f64s(by_first, by_square), weight);
+            *low = simd.mul_f64s(by_first, by_square);
         }
         Self {
             low,
@@ -267,14 +308,16 @@ impl<S: Simd> Powers<S> {
         }
     }
 
-    /// Adds a kernel.
+    /// Adds a kernel times the weight of the pair.
     #[inline(always)]
-    fn add(&self, simd: S, Line(line): &Line, sum: &mut [S::f64s; 4]) {
+    fn add(&self, simd: S, weight: f64, Line(line): &Line, sum: &mut [S::f64s; 4]) {
+        let weight = simd.splat_f64s(weight);
         let (low, high) = line.split_at(4);
         let (low, high) = (vectors::<S>(low), vectors::<S>(high));
         for index in 0..Self::VECTORS {
             let value = simd.mul_add_e_f64s(self.fourth, high[index], low[index]);
-            sum[index] = simd.mul_add_e_f64s(self.low[index], value, sum[index]);
+            let low = simd.mul_f64s(self.low[index], weight);
+            sum[index] = simd.mul_add_e_f64s(low, value, sum[index]);
         }
     }
 }

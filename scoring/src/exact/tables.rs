@@ -185,6 +185,15 @@ pub(super) struct PairTerm {
 const NOTHING: Line = Line([0.0; 8]);
 
 impl PairTerm {
+    /// A term without knots.
+    pub const NONE: Self = Self {
+        effect: Effect::Shape,
+        receptor: Vec::new(),
+        ligand: Vec::new(),
+        rows: Vec::new(),
+        lines: Vec::new(),
+    };
+
     /// Prepares a term for blocks and tables that are there already.
     pub fn new(active: &ActiveTerm, tables: &PairTables, blocks: &Blocks) -> Self {
         let term = &active.term;

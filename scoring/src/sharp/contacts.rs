@@ -4,6 +4,7 @@ use super::Site;
 use super::energy::{BOND_LENGTH, DEPTH, RANGE, TOLERANCE};
 use crate::blocks::Blocks;
 pub(super) use crate::blocks::LANES;
+use crate::lanes::{each, total};
 use knotdock_structures::PolarAtom;
 use nalgebra::{Matrix3, Vector3};
 
@@ -190,7 +191,7 @@ pub(super) fn atom_sums(
     }
     let mut s = [0.0; 11];
     for (sum, lanes) in s.iter_mut().zip(&sums) {
-        *sum = total(lanes);
+        *sum = f64::from(total(lanes));
     }
     let [contacts, overlap, gx, gy, gz, xx, xy, xz, yy, yz, zz] = s;
     AtomSums {
@@ -199,21 +200,4 @@ pub(super) fn atom_sums(
         gradient: Vector3::new(gx, gy, gz),
         curvature: Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz),
     }
-}
-
-/// A value for each lane.
-#[inline(always)]
-fn each(value: impl Fn(usize) -> f32) -> Lanes {
-    let mut lanes = [0.0; LANES];
-    for (index, lane) in lanes.iter_mut().enumerate() {
-        *lane = value(index);
-    }
-    lanes
-}
-
-/// Sum of the lanes, by halves.
-#[inline(always)]
-fn total(lanes: &Lanes) -> f64 {
-    let [a, b, c, d, e, f, g, h] = *lanes;
-    f64::from(((a + e) + (c + g)) + ((b + f) + (d + h)))
 }

@@ -26,7 +26,6 @@
 
 mod contacts;
 mod descent;
-mod distance_floors;
 mod energy;
 mod pair_list;
 #[cfg(test)]
@@ -40,7 +39,6 @@ use crate::blocks::{Blocks, NearPoints};
 use crate::rigid_move::{center, heavy_atoms};
 use crate::se3::Pose;
 use contacts::{ContactLanes, LANES};
-use distance_floors::DistanceFloors;
 use knotdock_structures::{Knots, PolarAtom};
 use nalgebra::{Matrix3, Vector3};
 
@@ -66,7 +64,6 @@ pub struct SharpFit {
     polar: Blocks,
     /// Their places among all, in the order of their blocks.
     polar_sites: Vec<usize>,
-    near: DistanceFloors,
     receptor_center: Vector3<f64>,
     ligand: Vec<Site>,
     ligand_center: Vector3<f64>,
@@ -86,7 +83,8 @@ impl SharpFit {
                 .fold(0.0, |most: f64, site| most.max(site.radius))
         };
         let positions = |sites: &[Site]| sites.iter().map(|site| site.position).collect::<Vec<_>>();
-        let blocks = Blocks::new(&positions(&sites_of));
+        let reach = pair_reach(widest(&sites_of) + widest(&ligand)) + PairList::USUAL_SLACK;
+        let blocks = Blocks::within(&positions(&sites_of), reach);
         let sites_of = blocks.arranged(|index| sites_of[index]);
         let bonds = |site: &Site| site.polar.donates || site.polar.accepts;
         let polar: Vec<usize> = (0..sites_of.len())
@@ -104,7 +102,6 @@ impl SharpFit {
             polar_sites: polar_blocks.arranged(|index| polar[index]),
             polar: polar_blocks,
             receptor: blocks,
-            near: DistanceFloors::new(sites_of.iter().map(|site| site.position)),
             receptor_center,
             sites: sites_of,
             ligand,
@@ -120,9 +117,6 @@ impl SharpFit {
         for site in &self.ligand {
             let at = matrix * site.position + place;
             let reach = self.reach(site);
-            if self.near.excludes(&at, reach) {
-                continue;
-            }
             let direction = matrix * Vector3::from(site.polar.direction);
             self.receptor
                 .list_near(&at.into(), reach, &mut near, |near| {
@@ -140,7 +134,7 @@ impl SharpFit {
 
     /// Distance in Å from which a ligand atom has no energy.
     fn reach(&self, ligand: &Site) -> f64 {
-        (self.widest + ligand.radius + energy::RANGE).max(energy::BOND_REACH)
+        pair_reach(self.widest + ligand.radius)
     }
 
     /// Rotation of the ligand, and the place of its centre relative to the receptor's.
@@ -148,6 +142,11 @@ impl SharpFit {
         let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
         (*pose.rotation.to_rotation_matrix().matrix(), place)
     }
+}
+
+/// Distance in Å from which two atoms have no energy, by the sum of their radii.
+fn pair_reach(radii: f64) -> f64 {
+    (radii + energy::RANGE).max(energy::BOND_REACH)
 }
 
 /// The heavy atoms of a body relative to `middle`.

@@ -51,6 +51,9 @@ pub struct PairList {
 }
 
 impl PairList {
+    /// How much farther than pairs reach atoms are listed, but for atoms far from the interface, Å.
+    pub(super) const USUAL_SLACK: f64 = SHIFT + 30.0 * ANGLE;
+
     /// Begins at a pose: finds its interface. False if no pair is near.
     pub(super) fn begin(&mut self, fit: &SharpFit, pose: &Pose) -> bool {
         let (matrix, place) = fit.placed(pose);
@@ -62,9 +65,6 @@ impl PairList {
         for (index, site) in fit.ligand.iter().enumerate() {
             let at: Vector3<f64> = matrix * site.position + place;
             self.reachable.push((index, at));
-            if fit.near.excludes(&at, INTERFACE) {
-                continue;
-            }
             fit.receptor.list_near(&at.into(), INTERFACE, near, |near| {
                 for (square, atom) in near.pairs() {
                     let position = Vector3::from(fit.receptor.position(atom));
@@ -115,7 +115,7 @@ impl PairList {
                 continue;
             };
             let slack = SHIFT + ANGLE * arm.norm();
-            if !fit.near.excludes(&place, fit.reach(site) + slack) {
+            if !fit.receptor.excludes(&place.into(), fit.reach(site) + slack) {
                 self.list_atom(fit, site, (&arm, &place), slack);
             }
         }

@@ -22,7 +22,7 @@ use knotdock_structures::ball_solid::{BallHierarchy, BallSolid, Motion};
 use knotdock_structures::{Ball, Error};
 use nalgebra::Vector3;
 
-use super::{Certificate, Collision, CollisionQuery, has_come};
+use super::{Certificate, Collision, CollisionQuery, Verdict, has_come};
 
 /// How verdicts and forces are computed.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -133,6 +133,12 @@ impl CollisionQuery<'_> {
         let collision = self.collision;
         let about = self.motion.apply(collision.solids[1].centroid());
         let takes_region = collision.method != Method::Hybrid;
+        if takes_region
+            && collision.exact().is_some()
+            && self.certificate_by_search().verdict() == Verdict::Free
+        {
+            return Some(Contact::default());
+        }
         if let Some(region) = takes_region.then(|| self.region()).flatten() {
             let force = region.by_shift.map(|part| 0.0 - part);
             let torque = Vector3::from(about).cross(&Vector3::from(region.by_shift))

@@ -182,6 +182,10 @@ pub struct CollisionReport {
 #[derive(Clone, Debug)]
 pub struct Collision<'a> {
     solids: [&'a BallSolid; 2],
+    /// Sum of how far the solids reach from where their stored coordinates are zero.
+    reach: f64,
+    /// How far B reaches from the origin of its file.
+    arm: f64,
     margin: f64,
     method: Method,
     max_modes: usize,
@@ -198,6 +202,8 @@ impl<'a> Collision<'a> {
     pub fn new(fixed: &'a BallSolid, moved: &'a BallSolid) -> Self {
         Self {
             solids: [fixed, moved],
+            reach: fixed.reach() + moved.reach(),
+            arm: moved.reach_from(moved.origin().map(|part| -part)),
             margin: 0.0,
             method: Method::Auto,
             max_modes: DEFAULT_MAX_MODES,
@@ -283,14 +289,12 @@ impl<'a> Collision<'a> {
     /// sqrt(2 theta^2 + t^2). Free solids stay apart, and the deepest pair of inner balls in each other, until that
     /// exceeds their gap or depth.
     fn tolerance(&self, verdict: Verdict, bounds: &DistanceBounds) -> f64 {
-        let moved = self.solids[1];
-        let rho = moved.reach_from(moved.origin().map(|part| -part));
         let slack = match verdict {
             Verdict::Free => bounds.low - self.margin,
             Verdict::Hit => self.margin - bounds.high,
             Verdict::Undecided => 0.0,
         };
-        slack.max(0.0) / (0.5 * rho * rho + 1.0).sqrt()
+        slack.max(0.0) / (0.5 * self.arm * self.arm + 1.0).sqrt()
     }
 
     /// Results for one pose.
@@ -350,6 +354,7 @@ impl<'a> Collision<'a> {
             motion: self.motion(pose),
             start,
             end: self.deadline.and_then(|time| start.checked_add(time)),
+            searched: None,
             contact: None,
             region: None,
             ball_pairs: 0,
@@ -400,6 +405,8 @@ pub struct CollisionQuery<'q> {
     motion: Motion,
     start: Instant,
     end: Option<Instant>,
+    /// The certificate by balls and triangles, once it is known.
+    searched: Option<Certificate>,
     /// A margin and how meshes are to each other with it, once that is known.
     contact: Option<(f64, MeshContact)>,
     /// The region that meshes share, once it is known.
@@ -446,6 +453,9 @@ impl CollisionQuery<'_> {
 
     /// The certificate by balls and by triangles.
     fn certificate_by_search(&mut self) -> Certificate {
+        if let Some(known) = self.searched {
+            return known;
+        }
         let exact = self.collision.exact();
         let first = match (exact, self.collision.method) {
             (None, _) => usize::MAX,
@@ -472,6 +482,7 @@ impl CollisionQuery<'_> {
             };
         }
         self.ball_pairs += self.work.search.ball_pairs();
+        self.searched = Some(certificate);
         certificate
     }
 
@@ -583,11 +594,10 @@ impl CollisionQuery<'_> {
 
     /// How far the rounding of a pose and of coordinates moves a point of B in A's frame.
     fn rounding(&self) -> f64 {
-        let solids = self.collision.solids;
-        let places = solids.map(BallSolid::origin);
+        let places = self.collision.solids.map(BallSolid::origin);
         let places = places.iter().chain([&self.motion.shift]).flatten();
-        let reach: f64 = solids.iter().map(|solid| solid.reach()).sum();
-        8.0 * f64::EPSILON * (reach + places.map(|part| part.abs()).sum::<f64>())
+        let length = self.collision.reach + places.map(|part| part.abs()).sum::<f64>();
+        8.0 * f64::EPSILON * length
     }
 
     /// Points of two balls on the line of their centres, in A's file frame.

@@ -26,7 +26,7 @@ pub(super) const TERM: TermDefinition = TermDefinition {
 
 /// Minus the weighted potential (score per RT) over the pairs of two sets of knots with atom kinds.
 ///
-/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`, with E_ab by [`EnergyTable::at`]. Atoms without a
+/// Two atoms of kinds a and b at distance d score `-weight E_ab(d)`, with E_ab by [`energy`]. Atoms without a
 /// kind do not count.
 pub(super) fn term(
     [receptor, ligand]: [&Knots; 2],
@@ -38,14 +38,13 @@ pub(super) fn term(
         receptor,
         ligand,
         |knots| &knots.atom_kinds,
-        energies.unknown(),
+        (energies.unknown(), REACH),
     );
     Box::new(move |pose, _| {
         let sum = bodies.sum(
             pose,
-            REACH,
             #[inline(always)]
-            |a, b, distance| energies.at(a, b, distance).0,
+            |a, b, distance| energy(energies.row(b), a, distance),
         );
         -weight * sum
     })
@@ -199,14 +198,17 @@ impl AtomPairPotential {
 pub(super) const REACH: f64 = DISTANCES[DISTANCES.len() - 1] + STEP;
 /// Distance in Å from which smooth energies are 0.
 pub(super) const SMOOTH_REACH: f64 = REACH + 0.5 * STEP;
-/// Energies stored for a pair of kinds: those of the potential, then zeros. They fill half a cache line.
-const NODES: usize = 8;
+/// Energies stored for a pair of kinds: the first twice, those of the potential, then zeros.
+const NODES: usize = DISTANCES.len() + 3;
+
+/// 1.5 * 2^52: added to a number below 2^31 in size, it leaves that number, rounded, in the sum's low bits.
+const ROUNDING: f64 = 6755399441055744.0;
 
 /// Energies by the kinds of two atoms and their distance, joined by straight lines.
 ///
 /// They are constant below the potential's first distance and fall to 0 over one step after the last.
 pub(super) struct EnergyTable {
-    /// `[receptor kind][ligand kind]`. The last kind in both is that of atoms without a kind, with energies of 0.
+    /// `[ligand kind][receptor kind]`. The last kind in both is that of atoms without a kind, with energies of 0.
     energies: Vec<[f32; NODES]>,
     kinds: usize,
 }
@@ -218,8 +220,10 @@ impl EnergyTable {
         let mut energies = vec![[0.0; NODES]; kinds * kinds];
         for a in 0..kinds - 1 {
             for b in 0..kinds - 1 {
-                energies[a * kinds + b][..DISTANCES.len()]
-                    .copy_from_slice(potential.energies(a, b));
+                let nodes = &mut energies[a * kinds + b];
+                let known = potential.energies(a, b);
+                nodes[0] = known[0];
+                nodes[1..=known.len()].copy_from_slice(known);
             }
         }
         Self { energies, kinds }
@@ -230,35 +234,58 @@ impl EnergyTable {
         self.kinds - 1
     }
 
-    /// Energy of a receptor atom and a ligand atom in RT, and its derivative by their distance in RT/Å.
+    /// Energies of atoms of the receptor with one of the ligand, by the receptor's kinds.
     #[inline(always)]
-    pub fn at(&self, receptor: usize, ligand: usize, distance: f64) -> (f64, f64) {
-        let nodes = &self.energies[receptor * self.kinds + ligand];
-        let place = ((distance - DISTANCES[0]) / STEP).clamp(0.0, (NODES - 1) as f64);
-        let node = (place as usize).min(NODES - 2);
-        let (low, high) = (f64::from(nodes[node]), f64::from(nodes[node + 1]));
-        let rise = if place > 0.0 { high - low } else { 0.0 };
-        (low + (place - node as f64) * rise, rise / STEP)
+    pub fn row(&self, ligand: usize) -> &[[f32; NODES]] {
+        let from = ligand * self.kinds;
+        self.energies
+            .get(from..from + self.kinds)
+            .unwrap_or_default()
     }
+}
 
-    /// As [`Self::at`], averaged over the distances within a quarter of an Ångström: the derivative is continuous.
-    ///
-    /// It is the quadratic B-spline of the nodes and ends at [`SMOOTH_REACH`].
-    #[inline(always)]
-    pub fn smooth(&self, receptor: usize, ligand: usize, distance: f64) -> (f64, f64) {
-        let nodes = &self.energies[receptor * self.kinds + ligand];
-        let place = ((distance - DISTANCES[0]) / STEP).clamp(-0.5, (NODES - 2) as f64 + 0.5);
-        let node = (place + 0.5) as usize;
-        let from = place - node as f64;
-        let middle = f64::from(nodes[node]);
-        let low = f64::from(nodes[node.saturating_sub(1)]);
-        let high = f64::from(nodes[(node + 1).min(NODES - 1)]);
-        let (fall, rise) = (middle - low, high - middle);
-        let (before, after) = (0.5 - from, 0.5 + from);
-        (
-            middle + 0.5 * (after * after * rise - before * before * fall),
-            (before * fall + after * rise) / STEP,
-        )
+/// Place of a distance among the nodes, the first one of the potential at zero: the nearest node, and the way from it.
+#[inline(always)]
+fn node(place: f64) -> (usize, f64) {
+    let rounded = place + ROUNDING;
+    (rounded.to_bits() as u32 as usize, place - (rounded - ROUNDING))
+}
+
+/// Energy in RT of two atoms at a distance, from the row of one and the kind of the other.
+#[inline(always)]
+pub(super) fn energy(row: &[[f32; NODES]], kind: usize, distance: f64) -> f64 {
+    let place = ((distance - DISTANCES[0]) / STEP).clamp(0.0, DISTANCES.len() as f64);
+    // Of the middles between nodes; straight lines meet at the nodes themselves.
+    let (first, from) = node(place - 0.5);
+    let [_, low, high] = nodes(row, kind, first);
+    low + (from + 0.5) * (high - low)
+}
+
+/// As [`energy`], averaged over the distances within a quarter of an Ångström, with its derivative by the distance in
+/// RT/Å, which is continuous.
+///
+/// It is the quadratic B-spline of the nodes and ends at [`SMOOTH_REACH`].
+#[inline(always)]
+pub(super) fn smooth_energy(row: &[[f32; NODES]], kind: usize, distance: f64) -> (f64, f64) {
+    let place = ((distance - DISTANCES[0]) / STEP).clamp(-0.5, DISTANCES.len() as f64 + 0.5);
+    let (middle, from) = node(place);
+    let [low, middle, high] = nodes(row, kind, middle);
+    let (fall, rise) = (middle - low, high - middle);
+    let (before, after) = (0.5 - from, 0.5 + from);
+    (
+        middle + 0.5 * (after * after * rise - before * before * fall),
+        (before * fall + after * rise) / STEP,
+    )
+}
+
+/// Energies at a node and those beside it.
+#[inline(always)]
+fn nodes(row: &[[f32; NODES]], kind: usize, middle: usize) -> [f64; 3] {
+    let nodes = row.get(kind).and_then(|nodes| nodes.get(middle..middle + 3));
+    debug_assert!(nodes.is_some(), "a kind or node that is not there");
+    match nodes {
+        Some(&[low, middle, high]) => [low, middle, high].map(f64::from),
+        _ => [0.0; 3],
     }
 }
 

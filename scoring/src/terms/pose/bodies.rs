@@ -1,6 +1,7 @@
 //! Two bodies of typed atoms, and sums over their pairs within a reach.
 
-use crate::blocks::{Blocks, NearPoints};
+use crate::blocks::{Blocks, LANES, NearPoints};
+use crate::lanes::{each, total};
 use crate::rigid_move::center;
 use crate::se3::Pose;
 use crate::vectorized::with_simd;
@@ -14,24 +15,27 @@ pub(super) struct Bodies {
     /// Types of the receptor's atoms, in the order of the blocks.
     types: Vec<usize>,
     receptor_center: Vector3<f64>,
+    /// Distance in Å from which no pair counts.
+    reach: f64,
     ligand: Vec<(Vector3<f64>, usize)>,
     ligand_center: Vector3<f64>,
 }
 
 impl Bodies {
-    /// Takes the knots whose type is below `kinds`. `types` returns the type of each knot, or nothing for a set
+    /// Takes the knots whose type is below `kinds`, for sums over pairs nearer than `reach` (Å). `types` returns the type of each knot, or nothing for a set
     /// without types.
     pub fn new(
         receptor: &Knots,
         ligand: &Knots,
         types: impl Fn(&Knots) -> &[Option<u8>],
-        kinds: usize,
+        (kinds, reach): (usize, f64),
     ) -> Self {
         let (atoms, receptor_center) = typed(receptor, types(receptor), kinds);
         let (positions, kinds_of): (Vec<Vector3<f64>>, Vec<usize>) = atoms.into_iter().unzip();
         let (ligand, ligand_center) = typed(ligand, types(ligand), kinds);
-        let receptor = Blocks::new(&positions);
+        let receptor = Blocks::within(&positions, reach);
         Self {
+            reach,
             types: receptor.arranged(|index| kinds_of[index]),
             receptor,
             receptor_center,
@@ -40,15 +44,14 @@ impl Bodies {
         }
     }
 
-    /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs nearer than
-    /// `reach` (Å). `value` must be `#[inline(always)]`, so that it is compiled for the vector registers of the sum.
-    pub fn sum(&self, pose: &Pose, reach: f64, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
+    /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs within reach. `value` must be `#[inline(always)]`, so that it is compiled for the vector registers of the sum.
+    pub fn sum(&self, pose: &Pose, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
         let bodies = self;
         with_simd!(
             <'a, F: Fn(usize, usize, f64) -> f64>(
-                bodies: &'a Bodies, pose: &'a Pose, reach: f64, value: F
+                bodies: &'a Bodies, pose: &'a Pose, value: F
             ) -> f64,
-            |simd| bodies.sum_with(simd, pose, reach, value)
+            |simd| bodies.sum_with(simd, pose, value)
         )
     }
 
@@ -57,35 +60,43 @@ impl Bodies {
         &self,
         simd: S,
         pose: &Pose,
-        reach: f64,
         value: impl Fn(usize, usize, f64) -> f64,
     ) -> f64 {
         let matrix = pose.rotation.to_rotation_matrix();
         let place = pose.rotation * self.ligand_center + pose.translation - self.receptor_center;
         let mut near = NearPoints::default();
-        let mut total = 0.0;
+        let mut sum = 0.0;
         for &(atom, kind) in &self.ligand {
-            let mut sum = 0.0;
+            let mut sums = [0.0; LANES];
             let position = (matrix * atom + place).into();
             self.receptor.near(
                 simd,
                 &position,
-                reach,
+                self.reach,
                 &mut near,
                 #[inline(always)]
                 |near| {
-                    for (square, point) in near.pairs() {
-                        let Some(&other) = self.types.get(point as usize) else {
-                            debug_assert!(false, "an atom that is not there is near");
-                            continue;
-                        };
-                        sum += value(other, kind, square.sqrt());
+                    for (squares, points) in near.eights() {
+                        let distances = each(|lane| squares[lane].sqrt());
+                        let mut values = [0.0; LANES];
+                        for lane in 0..LANES {
+                            let Some(&other) = self.types.get(points[lane] as usize) else {
+                                debug_assert!(false, "an atom that is not there is near");
+                                continue;
+                            };
+                            values[lane] = value(other, kind, distances[lane]);
+                        }
+                        // What fills up the last eight is infinitely far.
+                        sums = each(|lane| {
+                            let counts = distances[lane] < f64::INFINITY;
+                            sums[lane] + if counts { values[lane] } else { 0.0 }
+                        });
                     }
                 },
             );
-            total += sum;
+            sum += total(&sums);
         }
-        total
+        sum
     }
 }
 
@@ -251,7 +262,7 @@ mod tests {
         for (count, size, at) in [(400, 30.0, 0.0), (300, 50.0, 1e6), (60, 200.0, -3.0)] {
             let mut met = 0;
             let (a, b) = (cloud(count, size, 1, at), cloud(80, 18.0, 2, 5.0));
-            let bodies = Bodies::new(&a, &b, |knots| &knots.atom_kinds, KINDS);
+            let bodies = Bodies::new(&a, &b, |knots| &knots.atom_kinds, (KINDS, REACH));
             for step in 0..40 {
                 let angle = f64::from(step);
                 let pose = Pose::from_parts(
@@ -259,7 +270,7 @@ mod tests {
                     [at + 0.9 * angle - 18.0, at - 5.0, at + 0.3 * angle],
                 );
                 let expected = direct(&a, &b, &pose);
-                let got = bodies.sum(&pose, REACH, value);
+                let got = bodies.sum(&pose, value);
                 met += usize::from(expected != 0.0);
                 // File coordinates of 1e6 Å hold 1e-10 Å.
                 assert!(
@@ -274,7 +285,7 @@ mod tests {
     #[test]
     fn knots_without_types_sum_to_nothing() {
         let bare = Knots::new(vec![[0.0; 3]], vec![1.7]).unwrap();
-        let bodies = Bodies::new(&bare, &bare, |knots| &knots.atom_kinds, KINDS);
-        assert_eq!(bodies.sum(&Pose::identity(), REACH, value), 0.0);
+        let bodies = Bodies::new(&bare, &bare, |knots| &knots.atom_kinds, (KINDS, REACH));
+        assert_eq!(bodies.sum(&Pose::identity(), value), 0.0);
     }
 }

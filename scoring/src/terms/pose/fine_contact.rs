@@ -51,11 +51,10 @@ fn term(
     let step = |range, a, b| -weight * (energy(range, a, b) - energy(range + 1, a, b));
     let steps: [[[f64; 3]; TYPES.len()]; TYPES.len()] =
         from_fn(|a| from_fn(|b| from_fn(|range| step(range, a, b))));
-    let bodies = Bodies::new(receptor, ligand, |knots| &knots.contact_types, TYPES.len());
+    let bodies = Bodies::new(receptor, ligand, |knots| &knots.contact_types, (TYPES.len(), REACH));
     Box::new(move |pose, _| {
         bodies.sum(
             pose,
-            REACH,
             #[inline(always)]
             |a, b, distance| {
                 let [first, second, third] = steps[a][b];

@@ -1,15 +1,18 @@
 //! The ligand atoms near the receptor, their pairs, and the interface's centre and radius.
 
-use crate::blocks::{Blocks, NearPoints};
+use crate::blocks::{Blocks, LANES, NearPoints};
+use crate::lanes::each;
 use crate::rigid_move::Move;
 use crate::se3::Pose;
 use crate::vectorized::with_simd;
 use nalgebra::{Matrix3, UnitQuaternion, Vector3};
 use pulp::Simd;
 
-/// Distance in Å beyond the reach up to which ligand atoms are collected. Once one may have moved farther they are
-/// collected anew, so that those collected make every pair within reach.
-const SLACK: f64 = 2.0;
+/// Shift in Å of a move and its angle in radians up to which a list holds every pair within reach.
+const SHIFT: f64 = 0.8;
+const ANGLE: f64 = 0.08;
+/// How much farther than pairs reach blocks are listed, but for atoms far from the interface, Å.
+pub(super) const USUAL_SLACK: f64 = SHIFT + 30.0 * ANGLE;
 /// Radius in Å that is added to that of an interface, by squares: a single contact may rotate, too.
 const MIN_RADIUS: f64 = 3.0;
 
@@ -23,11 +26,11 @@ pub(super) struct Site {
 
 /// The atoms of two bodies.
 pub(super) struct Atoms {
-    /// Positions of the receptor's atoms relative to its centre.
+    /// The receptor's atoms.
     pub receptor: Blocks,
     pub receptor_center: Vector3<f64>,
-    /// The receptor's atoms, in the order of the blocks.
-    pub sites: Vec<Site>,
+    /// The receptor's atoms with their positions relative to its centre, in the order of the blocks.
+    pub sites: Vec<(Vector3<f64>, Site)>,
     pub ligand: Vec<(Vector3<f64>, Site)>,
     pub ligand_center: Vector3<f64>,
     /// Distance in Å from which no pair has an energy.
@@ -39,12 +42,16 @@ pub(super) struct Mobile {
     /// Position before any move relative to the centre of the interface, Å.
     pub arm: Vector3<f64>,
     pub site: Site,
+    /// End of its blocks; they begin where those of the previous atom end.
+    end: usize,
 }
 
 /// Scratch space for scoring poses by any term. Buffers keep their size from one pose to the next.
 #[derive(Default)]
 pub struct Workspace {
     pub(super) mobile: Vec<Mobile>,
+    /// Numbers of the receptor's blocks near each of them.
+    blocks: Vec<u32>,
     /// Centre of the interface relative to the receptor's, Å.
     pub(super) middle: Vector3<f64>,
     /// Receptor atoms near one of them.
@@ -53,15 +60,20 @@ pub struct Workspace {
     pub(in crate::terms::pose) violations: Vec<f64>,
 }
 
-/// A pair of atoms within reach.
-pub(super) struct Pair<'a> {
-    /// The receptor's atom.
-    pub receptor: &'a Site,
-    /// From the receptor's atom to the ligand's, Å.
-    pub between: Vector3<f64>,
-    /// Square of their distance, Å².
-    pub square: f64,
+/// Eight receptor atoms about a ligand atom. What fills up the last eight is as far away as [`FARTHEST`].
+pub(super) struct Eight<'a> {
+    /// From the receptor's atoms to the ligand's, along each axis, Å.
+    pub between: [[f64; LANES]; 3],
+    /// Squares of their distances, Å².
+    pub squares: [f64; LANES],
+    /// Their radii, Å.
+    pub radii: [f64; LANES],
+    /// Their kinds.
+    pub kinds: &'a [usize; LANES],
 }
+
+/// Largest square of a distance, Å²: no energy is left there.
+const FARTHEST: f64 = 1e6;
 
 /// Place of the ligand before any move, relative to the receptor's centre.
 pub(super) struct Start {
@@ -77,16 +89,6 @@ pub(super) struct Interface {
     pub radius: f64,
 }
 
-impl Workspace {
-    /// Makes arms relative to a centre of the interface.
-    fn recenter(&mut self, middle: &Vector3<f64>) {
-        for atom in &mut self.mobile {
-            atom.arm += self.middle - middle;
-        }
-        self.middle = *middle;
-    }
-}
-
 impl Atoms {
     /// Place of the ligand at a pose.
     pub(super) fn start(&self, pose: &Pose) -> Start {
@@ -96,7 +98,8 @@ impl Atoms {
         }
     }
 
-    /// Collects the ligand atoms within reach and [`SLACK`] of the receptor at a move about `middle`.
+    /// Collects the ligand atoms that may come within reach of the receptor near a move about `middle`, and the blocks that
+    /// each may reach.
     pub(super) fn collect(
         &self,
         start: &Start,
@@ -105,39 +108,45 @@ impl Atoms {
         workspace: &mut Workspace,
     ) {
         workspace.mobile.clear();
+        workspace.blocks.clear();
         workspace.middle = *middle;
         let turn = at.turn.to_rotation_matrix();
         for &(position, site) in &self.ligand {
             let arm = start.matrix * position + start.place - middle;
             let position = (turn * arm + at.shift + middle).into();
-            if self.receptor.may_be_within(&position, self.reach + SLACK) {
-                workspace.mobile.push(Mobile { arm, site });
+            let reach = self.reach + SHIFT + ANGLE * arm.norm();
+            let before = workspace.blocks.len();
+            let blocks = &mut workspace.blocks;
+            self.receptor
+                .list_blocks(&position, reach, |block| blocks.push(block));
+            let end = workspace.blocks.len();
+            if end > before {
+                workspace.mobile.push(Mobile { arm, site, end });
             }
         }
     }
 
-    /// Collects anew where an atom may have moved by more than [`SLACK`] since that was done at the move `collected`.
-    /// `widest` is the distance in Å of any ligand atom from the centre of the interface.
+    /// Collects anew where an atom may have moved too far since that was done at the move `collected`.
     pub(super) fn renew(
         &self,
         collected: &mut Move,
         at: &Move,
-        widest: f64,
         start: &Start,
         workspace: &mut Workspace,
     ) {
-        let turned = widest * at.turn.angle_to(&collected.turn);
-        if (at.shift - collected.shift).norm() + turned > SLACK {
+        let turned = at.turn.angle_to(&collected.turn);
+        if (at.shift - collected.shift).norm() > SHIFT || turned > ANGLE {
             *collected = *at;
             let middle = workspace.middle;
             self.collect(start, &middle, at, workspace);
         }
     }
 
-    /// Visits each collected ligand atom at a move, with its arm there and the receptor atoms within reach of it.
+    /// Visits each collected ligand atom at a move, with its arm there and the receptor atoms within reach of it, eight at
+    /// a time.
     ///
-    /// `begin` is called for an atom and its arm, `pair` for each of its pairs, `end` after them. All must be
-    /// `#[inline(always)]`.
+    /// `begin` is called for an atom, `eight` for each eight of its partners, `end` after them with the atom's arm. All
+    /// must be `#[inline(always)]`.
     #[inline(always)]
     pub(super) fn visit<S: Simd, T>(
         &self,
@@ -145,39 +154,52 @@ impl Atoms {
         workspace: &mut Workspace,
         at: &Move,
         begin: impl Fn() -> T,
-        mut pair: impl FnMut(&mut T, &Mobile, Pair),
+        mut eight: impl FnMut(&mut T, &Mobile, &Eight),
         mut end: impl FnMut(T, &Vector3<f64>),
     ) {
         let turn = at.turn.to_rotation_matrix();
         let Workspace {
             mobile,
+            blocks,
             middle,
             near,
             ..
         } = workspace;
+        let mut from = 0;
         for atom in mobile.iter() {
+            let listed = blocks.get(from..atom.end).unwrap_or_default();
+            from = atom.end;
             let arm = turn * atom.arm;
             let position = arm + at.shift + *middle;
             let mut sums = begin();
-            self.receptor.near(
+            self.receptor.near_among(
                 simd,
-                &position.into(),
-                self.reach,
+                listed,
+                (&position.into(), self.reach),
                 near,
                 #[inline(always)]
                 |near| {
-                    for (square, point) in near.pairs() {
-                        let Some(receptor) = self.sites.get(point as usize) else {
-                            debug_assert!(false, "an atom that is not there is near");
-                            continue;
+                    for (squares, points) in near.eights() {
+                        let mut kinds = [0; LANES];
+                        let mut of = Eight {
+                            between: [[0.0; LANES]; 3],
+                            squares: each(|lane| squares[lane].min(FARTHEST)),
+                            radii: [0.0; LANES],
+                            kinds: &[0; LANES],
                         };
-                        let between = position - Vector3::from(self.receptor.position(point));
-                        let pair_of = Pair {
-                            receptor,
-                            between,
-                            square,
-                        };
-                        pair(&mut sums, atom, pair_of);
+                        for lane in 0..LANES {
+                            let Some((at, site)) = self.sites.get(points[lane] as usize) else {
+                                debug_assert!(false, "an atom that is not there is near");
+                                continue;
+                            };
+                            for axis in 0..3 {
+                                of.between[axis][lane] = position[axis] - at[axis];
+                            }
+                            of.radii[lane] = site.radius;
+                            kinds[lane] = site.kind;
+                        }
+                        of.kinds = &kinds;
+                        eight(&mut sums, atom, &of);
                     }
                 },
             );
@@ -185,22 +207,13 @@ impl Atoms {
         }
     }
 
-    /// Largest distance in Å of a ligand atom from `middle`.
-    pub(super) fn widest(&self, start: &Start, middle: &Vector3<f64>) -> f64 {
-        let squares = self
-            .ligand
-            .iter()
-            .map(|(position, _)| (start.matrix * position + start.place - middle).norm_squared());
-        squares.fold(0.0, f64::max).sqrt()
-    }
-
-    /// Centre and radius of the middles of all pairs, which weigh less the farther they are and nothing at the reach.
-    /// `None` if no pair is within reach. From then on arms are relative to that centre.
-    pub(super) fn interface(&self, workspace: &mut Workspace) -> Option<Interface> {
-        let atoms = self;
+    /// Centre and radius of the middles of all pairs at the start, which weigh less the farther they are and nothing at the
+    /// reach. `None` if no pair is within reach.
+    pub(super) fn interface(&self, start: &Start, workspace: &mut Workspace) -> Option<Interface> {
+        let (atoms, near) = (self, &mut workspace.near);
         let middles = with_simd!(
-            <'a>(atoms: &'a Atoms, workspace: &'a mut Workspace) -> MiddleSums,
-            |simd| atoms.middles(simd, workspace)
+            <'a>(atoms: &'a Atoms, start: &'a Start, near: &'a mut NearPoints) -> MiddleSums,
+            |simd| atoms.middles(simd, start, near)
         );
         if middles.count == 0.0 {
             return None;
@@ -208,32 +221,36 @@ impl Atoms {
         let middle = middles.sum / middles.count;
         let spread = (middles.squares / middles.count - middle.norm_squared()).max(0.0);
         let radius = (spread + MIN_RADIUS * MIN_RADIUS).sqrt();
-        workspace.recenter(&middle);
         Some(Interface { middle, radius })
     }
 
     /// Sums over the weighted middles of all pairs.
     #[inline(always)]
-    fn middles<S: Simd>(&self, simd: S, workspace: &mut Workspace) -> MiddleSums {
+    fn middles<S: Simd>(&self, simd: S, start: &Start, near: &mut NearPoints) -> MiddleSums {
         let mut sums = MiddleSums::default();
-        let from = workspace.middle;
-        self.visit(
-            simd,
-            workspace,
-            &Move::default(),
-            #[inline(always)]
-            || (),
-            #[inline(always)]
-            |(), atom, pair| {
-                let weight = self.contact(pair.square);
-                let middle = from + atom.arm - 0.5 * pair.between;
-                sums.count += weight;
-                sums.sum += weight * middle;
-                sums.squares += weight * middle.norm_squared();
-            },
-            #[inline(always)]
-            |(), _| (),
-        );
+        for (position, _) in &self.ligand {
+            let at = start.matrix * position + start.place;
+            self.receptor.near(
+                simd,
+                &at.into(),
+                self.reach,
+                near,
+                #[inline(always)]
+                |near| {
+                    for (square, point) in near.pairs() {
+                        let Some((other, _)) = self.sites.get(point as usize) else {
+                            debug_assert!(false, "an atom that is not there is near");
+                            continue;
+                        };
+                        let weight = self.contact(square);
+                        let middle = 0.5 * (at + other);
+                        sums.count += weight;
+                        sums.sum += weight * middle;
+                        sums.squares += weight * middle.norm_squared();
+                    }
+                },
+            );
+        }
         sums
     }
 

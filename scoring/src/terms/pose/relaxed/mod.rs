@@ -13,10 +13,11 @@ mod list;
 mod tests;
 
 pub use self::list::Workspace;
-use self::list::{Atoms, Interface, Site};
+use self::list::{Atoms, Eight, Interface, Site, USUAL_SLACK};
 use super::TermDefinition;
-use super::atom_pair::{AtomPairPotential, EnergyTable, SMOOTH_REACH};
-use crate::blocks::Blocks;
+use super::atom_pair::{AtomPairPotential, EnergyTable, SMOOTH_REACH, energy, smooth_energy};
+use crate::blocks::{Blocks, LANES};
+use crate::lanes::{each, total};
 use crate::rigid_move::{Derivatives, Move, center, heavy_atoms};
 use crate::se3::Pose;
 use crate::vectorized::with_simd;
@@ -93,12 +94,13 @@ impl Relaxation {
             radii.fold(0.0, f64::max)
         };
         let positions: Vec<Vector3<f64>> = receptor.iter().map(|(position, _)| *position).collect();
-        let blocks = Blocks::new(&positions);
+        let reach = SMOOTH_REACH.max(widest(&receptor) + widest(&ligand));
+        let blocks = Blocks::within(&positions, reach + USUAL_SLACK);
         let atoms = Atoms {
-            sites: blocks.arranged(|index| receptor[index].1),
+            sites: blocks.arranged(|index| receptor[index]),
             receptor: blocks,
             receptor_center,
-            reach: SMOOTH_REACH.max(widest(&receptor) + widest(&ligand)),
+            reach,
             ligand,
             ligand_center,
         };
@@ -127,21 +129,19 @@ impl Relaxation {
     /// Relaxed pose with its energy, which is never above that of `pose`.
     pub fn relax(&self, pose: &Pose, workspace: &mut Workspace) -> Relaxed {
         let (start, none) = (self.atoms.start(pose), Move::default());
-        self.atoms
-            .collect(&start, &Vector3::zeros(), &none, workspace);
-        let Some(Interface { middle, radius }) = self.atoms.interface(workspace) else {
+        let Some(Interface { middle, radius }) = self.atoms.interface(&start, workspace) else {
             return Relaxed {
                 pose: *pose,
                 energy: 0.0,
             };
         };
-        let widest = self.atoms.widest(&start, &middle);
+        self.atoms.collect(&start, &middle, &none, workspace);
         let before = self.collected_energy(workspace, &none);
         let (mut at, mut collected) = (none, none);
         for longest in MAX_STEPS {
             at = self.slope(workspace, &at).step(&at, radius, longest);
             self.atoms
-                .renew(&mut collected, &at, widest, &start, workspace);
+                .renew(&mut collected, &at, &start, workspace);
         }
         let after = self.collected_energy(workspace, &at);
         if after < before {
@@ -163,37 +163,39 @@ impl Relaxation {
             workspace,
             at,
             #[inline(always)]
-            |receptor, ligand, square| self.pair(receptor, ligand, square.sqrt()),
+            |ligand, eight| self.energies_of(ligand, eight),
         )
     }
 
-    /// Sum at a move of a value of the two atoms and the square of their distance (Å²), which must be
-    /// `#[inline(always)]`.
+    /// Sum at a move of a value of a ligand atom and of each of eight receptor atoms, which must be `#[inline(always)]`.
     fn sum(
         &self,
         workspace: &mut Workspace,
         at: &Move,
-        value: impl Fn(&Site, &Site, f64) -> f64,
+        values: impl Fn(&Site, &Eight) -> [f64; LANES],
     ) -> f64 {
         let atoms = &self.atoms;
         with_simd!(
-            <'a, F: Fn(&Site, &Site, f64) -> f64>(
-                atoms: &'a Atoms, workspace: &'a mut Workspace, at: &'a Move, value: F
+            <'a, F: Fn(&Site, &Eight) -> [f64; LANES]>(
+                atoms: &'a Atoms, workspace: &'a mut Workspace, at: &'a Move, values: F
             ) -> f64,
             |simd| {
-                let mut total = 0.0;
+                let mut sum = 0.0;
                 atoms.visit(
                     simd,
                     workspace,
                     at,
                     #[inline(always)]
-                    || 0.0,
+                    || [0.0; LANES],
                     #[inline(always)]
-                    |sum, atom, pair| *sum += value(pair.receptor, &atom.site, pair.square),
+                    |sums: &mut [f64; LANES], atom, eight| {
+                        let values = values(&atom.site, eight);
+                        *sums = each(|lane| sums[lane] + values[lane]);
+                    },
                     #[inline(always)]
-                    |sum, _| total += sum,
+                    |sums, _| sum += total(&sums),
                 );
-                total
+                sum
             }
         )
     }
@@ -217,80 +219,109 @@ impl Relaxation {
             at,
             AtomSlope::default,
             #[inline(always)]
-            |sums, atom, pair| {
-                let Soft {
-                    rise, stiffness, ..
-                } = self.soft(pair.receptor, &atom.site, pair.square);
-                sums.gradient += rise * pair.between;
-                if stiffness > 0.0 {
-                    sums.curvature += (stiffness * pair.between) * pair.between.transpose();
+            |sums: &mut AtomSlope, atom, eight| {
+                let soft = self.soft(&atom.site, eight);
+                let [x, y, z] = &eight.between;
+                let [cx, cy, cz] =
+                    [x, y, z].map(|of| each(|lane| soft.stiffness[lane] * of[lane]));
+                let products = [
+                    (&soft.rise, x),
+                    (&soft.rise, y),
+                    (&soft.rise, z),
+                    (&cx, x),
+                    (&cx, y),
+                    (&cx, z),
+                    (&cy, y),
+                    (&cy, z),
+                    (&cz, z),
+                ];
+                for (sum, (a, b)) in sums.products.iter_mut().zip(products) {
+                    *sum = each(|lane| sum[lane] + a[lane] * b[lane]);
                 }
-                sums.contacts += atoms.contact(pair.square);
+                let weights = each(|lane| atoms.contact(eight.squares[lane]));
+                sums.contacts = each(|lane| sums.contacts[lane] + weights[lane]);
             },
             #[inline(always)]
             |sums, arm| {
-                if sums.contacts > 0.0 {
-                    slope.contacts += sums.contacts;
+                let contacts = total(&sums.contacts);
+                if contacts > 0.0 {
+                    slope.contacts += contacts;
+                    let [gx, gy, gz, xx, xy, xz, yy, yz, zz] =
+                        sums.products.each_ref().map(total);
+                    let gradient = Vector3::new(gx, gy, gz);
+                    let curvature = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
                     // Each body makes half of a rotation about the middle between their places.
-                    slope.add(&(arm + 0.5 * at.shift), &sums.gradient, &sums.curvature);
+                    slope.add(&(arm + 0.5 * at.shift), &gradient, &curvature);
                 }
             },
         );
         slope
     }
 
-    /// Energy of two atoms in RT at a distance.
+    /// Energies in RT of a ligand atom with eight receptor atoms.
     #[inline(always)]
-    fn pair(&self, receptor: &Site, ligand: &Site, distance: f64) -> f64 {
-        let (energy, _) = self.energies.at(receptor.kind, ligand.kind, distance);
-        let lack = (receptor.radius + ligand.radius - OVERLAP - distance).max(0.0);
-        energy + STIFFNESS * lack * lack
+    fn energies_of(&self, ligand: &Site, eight: &Eight) -> [f64; LANES] {
+        let row = self.energies.row(ligand.kind);
+        let distances = each(|lane| eight.squares[lane].sqrt());
+        let energies = each(|lane| energy(row, eight.kinds[lane], distances[lane]));
+        let lacks = each(|lane| {
+            let lack = eight.radii[lane] + ligand.radius - OVERLAP - distances[lane];
+            lack.max(0.0)
+        });
+        each(|lane| energies[lane] + STIFFNESS * lacks[lane] * lacks[lane])
     }
 
-    /// Energy of two atoms in the descent, by the square of their distance.
+    /// Energies of a ligand atom with eight receptor atoms in the descent, with their derivatives.
     ///
     /// The overlap costs `k s²/4 (1 - d²/s²)²` at a sum of radii s: near contact it is k times the square of the
     /// overlap, and no direction is preferred where two atoms coincide.
     #[inline(always)]
-    fn soft(&self, receptor: &Site, ligand: &Site, square: f64) -> Soft {
-        let distance = square.sqrt();
-        let (mut energy, rise) = self.energies.smooth(receptor.kind, ligand.kind, distance);
-        let mut rise = rise / distance.max(1e-6);
-        let sum = receptor.radius + ligand.radius - OVERLAP;
-        let lack = (1.0 - square / (sum * sum)).max(0.0);
-        let overlap = 0.5 * sum * lack;
-        energy += SOFT_CORE_STIFFNESS * overlap * overlap;
-        rise -= SOFT_CORE_STIFFNESS * lack;
-        let stiffness =
-            2.0 * SOFT_CORE_STIFFNESS / (sum * sum) * (overlap / FULL_STIFFNESS).min(1.0);
+    fn soft(&self, ligand: &Site, eight: &Eight) -> Soft {
+        let row = self.energies.row(ligand.kind);
+        let distances = each(|lane| eight.squares[lane].sqrt());
+        let mut smooth = [[0.0; LANES]; 2];
+        for lane in 0..LANES {
+            [smooth[0][lane], smooth[1][lane]] =
+                smooth_energy(row, eight.kinds[lane], distances[lane]).into();
+        }
+        let inverse = each(|lane| 1.0 / distances[lane].max(1e-6));
+        let sums = each(|lane| eight.radii[lane] + ligand.radius - OVERLAP);
+        let closeness = each(|lane| 1.0 / (sums[lane] * sums[lane]));
+        let lacks = each(|lane| (1.0 - eight.squares[lane] * closeness[lane]).max(0.0));
+        let overlaps = each(|lane| 0.5 * sums[lane] * lacks[lane]);
         Soft {
-            energy,
-            rise,
-            stiffness,
+            #[cfg(test)]
+            energy: each(|lane| {
+                smooth[0][lane] + SOFT_CORE_STIFFNESS * overlaps[lane] * overlaps[lane]
+            }),
+            rise: each(|lane| {
+                smooth[1][lane] * inverse[lane] - SOFT_CORE_STIFFNESS * lacks[lane]
+            }),
+            stiffness: each(|lane| {
+                let part = (overlaps[lane] * (1.0 / FULL_STIFFNESS)).min(1.0);
+                2.0 * SOFT_CORE_STIFFNESS * closeness[lane] * part
+            }),
         }
     }
 }
 
-/// Energy of two atoms in the descent with its derivatives.
+/// Energies of a ligand atom with eight others in the descent, with their derivatives.
 struct Soft {
-    /// Energy, RT.
-    #[cfg_attr(
-        not(test),
-        expect(dead_code, reason = "its derivatives are tested against it")
-    )]
-    energy: f64,
-    /// Derivative by the distance over the distance, RT/Å²: times the vector between the atoms the gradient.
-    rise: f64,
-    /// Stiffness of their overlap over the square of the distance, RT/Å⁴.
-    stiffness: f64,
+    /// Energies, RT.
+    #[cfg(test)]
+    energy: [f64; LANES],
+    /// Derivatives by the distance over the distance, RT/Å²: times the vector between the atoms the gradient.
+    rise: [f64; LANES],
+    /// Stiffness of their overlaps over the squares of the distances, RT/Å⁴.
+    stiffness: [f64; LANES],
 }
 
 /// Sums over the pairs of one ligand atom.
 #[derive(Default)]
 struct AtomSlope {
-    gradient: Vector3<f64>,
-    curvature: Matrix3<f64>,
-    contacts: f64,
+    /// Gradient along x, y and z, and curvature xx, xy, xz, yy, yz, zz, by lane.
+    products: [[f64; LANES]; 9],
+    contacts: [f64; LANES],
 }
 
 /// The atoms of a set of knots other than hydrogens, relative to its centre. `unknown` is the kind of atoms without a

@@ -72,7 +72,7 @@ fn the_energy_is_that_of_atom_pairs_and_overlaps() {
 
 /// Energy of the descent at a move.
 fn soft_energy(relaxation: &Relaxation, workspace: &mut Workspace, at: &Move) -> f64 {
-    let energy = |a: &Site, b: &Site, square: f64| relaxation.soft(a, b, square).energy;
+    let energy = |ligand: &Site, eight: &Eight| relaxation.soft(ligand, eight).energy;
     relaxation.sum(workspace, at, energy)
 }
 
@@ -80,10 +80,11 @@ fn soft_energy(relaxation: &Relaxation, workspace: &mut Workspace, at: &Move) ->
 fn collected(relaxation: &Relaxation, pose: &Pose) -> Option<(Workspace, Interface)> {
     let mut workspace = Workspace::default();
     let start = relaxation.atoms.start(pose);
+    let interface = relaxation.atoms.interface(&start, &mut workspace)?;
+    let none = Move::default();
     relaxation
         .atoms
-        .collect(&start, &Vector3::zeros(), &Move::default(), &mut workspace);
-    let interface = relaxation.atoms.interface(&mut workspace)?;
+        .collect(&start, &interface.middle, &none, &mut workspace);
     Some((workspace, interface))
 }
 
@@ -130,14 +131,13 @@ fn collected_pairs_add_up_to_the_energy() {
         };
         let mut was = Move::default();
         let start = relaxation.atoms.start(&pose);
-        let widest = relaxation.atoms.widest(&start, &middle);
         let steps = [0.0, 0.1, 0.3, 1.2].map(|by| Vector3::new(by, 0.4 * by, -by));
         let mut at = was;
         for step in steps {
             at = at.then_by_halves(step, 0.1 * step);
             relaxation
                 .atoms
-                .renew(&mut was, &at, widest, &start, &mut workspace);
+                .renew(&mut was, &at, &start, &mut workspace);
             let energy = relaxation.energy(&relaxation.atoms.moved(&pose, &at, &middle));
             let collected = relaxation.collected_energy(&mut workspace, &at);
             assert!((collected - energy).abs() < 1e-9 * energy.abs().max(1.0));
