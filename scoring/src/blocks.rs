@@ -11,6 +11,7 @@ use crate::distance_floors::DistanceFloors;
 use crate::vectorized::with_simd;
 use nalgebra::Vector3;
 use pulp::Simd;
+use std::any::Any;
 
 /// Blocks in a group.
 const GROUP: usize = 16;
@@ -193,8 +194,10 @@ impl Blocks {
                 continue;
             }
             let mut within = 0u32;
-            for (index, square) in group.squares(simd, &everywhere).into_iter().enumerate() {
-                within |= u32::from(square < square_reach) << index;
+            let squares = group.squares(simd, &everywhere);
+            let (halves, _) = squares.as_chunks::<HALF>();
+            for (index, half) in halves.iter().enumerate() {
+                within |= (below(simd, *half, square_reach) as u32) << (HALF * index);
             }
             while within != 0 {
                 visit(first + within.trailing_zeros());
@@ -268,7 +271,12 @@ impl Blocks {
             visit(near);
             near.clear();
         }
-        near.add(index * LANES as u32, &block.squares(simd, x), reach * reach);
+        near.add(
+            simd,
+            index * LANES as u32,
+            &block.squares(simd, x),
+            reach * reach,
+        );
     }
 }
 
@@ -346,17 +354,22 @@ pub(crate) const LANES: usize = 8;
 /// Points that are collected before they are handed on.
 const CAPACITY: usize = 1024;
 
-/// For each set of lanes, as bits: its lanes first, in order.
-static FRONT: [[u8; LANES]; 1 << LANES] = front();
+/// Lanes that are sorted at once.
+const HALF: usize = 4;
 
-const fn front() -> [[u8; LANES]; 1 << LANES] {
-    let mut front = [[0; LANES]; 1 << LANES];
+/// For each set of half of the lanes, as bits: its lanes first, in order; and the same as halves of numbers.
+static FRONT: [([u32; HALF], [u32; 2 * HALF]); 1 << HALF] = front();
+
+const fn front() -> [([u32; HALF], [u32; 2 * HALF]); 1 << HALF] {
+    let mut front = [([0; HALF], [0; 2 * HALF]); 1 << HALF];
     let mut mask = 0;
-    while mask < 1 << LANES {
+    while mask < 1 << HALF {
         let (mut lane, mut count) = (0, 0);
-        while lane < LANES {
+        while lane < HALF as u32 {
             if mask >> lane & 1 == 1 {
-                front[mask][count] = lane as u8;
+                front[mask].0[count] = lane;
+                front[mask].1[2 * count] = 2 * lane;
+                front[mask].1[2 * count + 1] = 2 * lane + 1;
                 count += 1;
             }
             lane += 1;
@@ -364,6 +377,39 @@ const fn front() -> [[u8; LANES]; 1 << LANES] {
         mask += 1;
     }
     front
+}
+
+/// Which of four numbers are below a limit, as bits.
+#[inline(always)]
+fn below<S: Simd>(simd: S, values: [f64; HALF], limit: f64) -> usize {
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = (&simd as &dyn Any).downcast_ref::<pulp::x86::V3>() {
+        use core::arch::x86_64::{__m256d, _CMP_LT_OQ};
+        let [values, limits]: [__m256d; 2] = [pulp::cast(values), pulp::cast([limit; HALF])];
+        let below = simd.avx._mm256_cmp_pd::<_CMP_LT_OQ>(values, limits);
+        return simd.avx._mm256_movemask_pd(below) as usize % (1 << HALF);
+    }
+    let _ = simd;
+    let bits = values.iter().enumerate();
+    bits.fold(0, |mask, (lane, &value)| {
+        mask | usize::from(value < limit) << lane
+    })
+}
+
+/// Four numbers, those of a set first.
+#[inline(always)]
+fn sorted<S: Simd>(simd: S, values: [f64; HALF], mask: usize) -> [f64; HALF] {
+    let (lanes, halves) = &FRONT[mask];
+    #[cfg(target_arch = "x86_64")]
+    if let Some(simd) = (&simd as &dyn Any).downcast_ref::<pulp::x86::V3>() {
+        let order = pulp::cast(*halves);
+        let sorted = simd
+            .avx2
+            ._mm256_permutevar8x32_ps(pulp::cast(values), order);
+        return pulp::cast(sorted);
+    }
+    let _ = (simd, halves);
+    lanes.map(|lane| values[lane as usize % HALF])
 }
 
 /// Points within reach of another.
@@ -403,26 +449,19 @@ impl NearPoints {
     }
 
     /// Adds those of eight points, the first of which is `first`, that are nearer than the root of `square_reach`.
-    /// Whether one is near is a coin toss that no branch predictor wins, so all eight are written, the near ones first,
-    /// and only these are counted.
+    /// Whether one is near is a coin toss that no branch predictor wins, so all are written, the near ones first, and only
+    /// these are counted.
     #[inline(always)]
-    pub fn add(&mut self, first: u32, squares: &[f64; LANES], square_reach: f64) {
+    pub fn add<S: Simd>(&mut self, simd: S, first: u32, squares: &[f64; LANES], square_reach: f64) {
         debug_assert!(!self.is_full());
-        let from = self.count.min(CAPACITY - LANES);
-        let places = &mut self.squares[from..from + LANES];
-        let points = &mut self.points[from..from + LANES];
-        let mut mask = 0;
-        for lane in 0..LANES {
-            mask |= usize::from(squares[lane] < square_reach) << lane;
+        let (halves, _) = squares.as_chunks::<HALF>();
+        for (half, first) in halves.iter().zip((first..).step_by(HALF)) {
+            let mask = below(simd, *half, square_reach);
+            let from = self.count.min(CAPACITY - HALF);
+            self.squares[from..from + HALF].copy_from_slice(&sorted(simd, *half, mask));
+            self.points[from..from + HALF].copy_from_slice(&FRONT[mask].0.map(|lane| first + lane));
+            self.count = from + mask.count_ones() as usize;
         }
-        let order = &FRONT[mask];
-        for lane in 0..LANES {
-            points[lane] = first + u32::from(order[lane]);
-        }
-        for lane in 0..LANES {
-            places[lane] = squares[usize::from(order[lane]) % LANES];
-        }
-        self.count = from + mask.count_ones() as usize;
     }
 
     /// Fills up the last eight with places infinitely far away.
@@ -487,40 +526,41 @@ mod tests {
                     .map(|_| Vector3::new(spread * next(), spread * next(), spread * next()))
                     .collect();
                 for blocks in [Blocks::new(&points), Blocks::within(&points, 9.0)] {
-                let numbers = blocks.arranged(|index| index);
-                for from in [points[0], points[0] + Vector3::new(3.0, -4.0, 5.0)] {
-                    let reach = 9.0;
-                    let x = from.into();
-                    let mut found = Vec::new();
-                    blocks.near(Scalar, &x, reach, &mut NearPoints::default(), |near| {
-                        for (square, point) in near.pairs() {
-                            let number = numbers[point as usize];
-                            let distance = (from - points[number]).norm_squared();
-                            assert!((square - distance).abs() <= 1e-12 * distance);
-                            found.push(number);
-                        }
-                    });
-                    found.sort_unstable();
-                    let expected: Vec<usize> = (0..points.len())
-                        .filter(|&index| (from - points[index]).norm() < reach)
-                        .collect();
-                    assert_eq!(found, expected, "{count} points over {spread} Å");
-                    let mut listed = Vec::new();
-                    blocks.list_near(&x, reach, &mut NearPoints::default(), |near| {
-                        listed.extend(near.pairs().map(|(_, point)| numbers[point as usize]));
-                    });
-                    listed.sort_unstable();
-                    assert_eq!(listed, expected, "{count} points over {spread} Å");
-                    let mut among = Vec::new();
-                    blocks.list_blocks(&x, 2.0 * reach, |block| among.push(block));
-                    let mut of_blocks = Vec::new();
-                    let near = &mut NearPoints::default();
-                    blocks.near_among(Scalar, &among, (&x, reach), near, |near| {
-                        of_blocks.extend(near.pairs().map(|(_, point)| numbers[point as usize]));
-                    });
-                    of_blocks.sort_unstable();
-                    assert_eq!(of_blocks, expected);
-                }
+                    let numbers = blocks.arranged(|index| index);
+                    for from in [points[0], points[0] + Vector3::new(3.0, -4.0, 5.0)] {
+                        let reach = 9.0;
+                        let x = from.into();
+                        let mut found = Vec::new();
+                        blocks.near(Scalar, &x, reach, &mut NearPoints::default(), |near| {
+                            for (square, point) in near.pairs() {
+                                let number = numbers[point as usize];
+                                let distance = (from - points[number]).norm_squared();
+                                assert!((square - distance).abs() <= 1e-12 * distance);
+                                found.push(number);
+                            }
+                        });
+                        found.sort_unstable();
+                        let expected: Vec<usize> = (0..points.len())
+                            .filter(|&index| (from - points[index]).norm() < reach)
+                            .collect();
+                        assert_eq!(found, expected, "{count} points over {spread} Å");
+                        let mut listed = Vec::new();
+                        blocks.list_near(&x, reach, &mut NearPoints::default(), |near| {
+                            listed.extend(near.pairs().map(|(_, point)| numbers[point as usize]));
+                        });
+                        listed.sort_unstable();
+                        assert_eq!(listed, expected, "{count} points over {spread} Å");
+                        let mut among = Vec::new();
+                        blocks.list_blocks(&x, 2.0 * reach, |block| among.push(block));
+                        let mut of_blocks = Vec::new();
+                        let near = &mut NearPoints::default();
+                        blocks.near_among(Scalar, &among, (&x, reach), near, |near| {
+                            of_blocks
+                                .extend(near.pairs().map(|(_, point)| numbers[point as usize]));
+                        });
+                        of_blocks.sort_unstable();
+                        assert_eq!(of_blocks, expected);
+                    }
                 }
             }
         }

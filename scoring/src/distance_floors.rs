@@ -36,7 +36,12 @@ impl DistanceFloors {
         // A cell for what is left over, and a margin in which a place may be near.
         let margin = EDGES + 1;
         let along = |length: f64, edge: f64| length / edge + (2 * margin + 1) as f64;
-        while extent.iter().map(|&length| along(length, edge)).product::<f64>() > MAX_CELLS {
+        while extent
+            .iter()
+            .map(|&length| along(length, edge))
+            .product::<f64>()
+            > MAX_CELLS
+        {
             edge *= 1.5;
         }
         let counts = [0, 1, 2].map(|axis| along(extent[axis], edge) as usize);

@@ -557,7 +557,13 @@ fn sharpen(
 ) -> Option<SharpOutcome> {
     let inputs = plan.sharp_inputs()?;
     progress.stage("sharp", 1);
-    let optima = optima(&inputs, candidates, body, plan.rotations);
+    let optima = optima(
+        &inputs,
+        candidates,
+        body,
+        plan.rotations,
+        plan.options.ranking.sharp,
+    );
     let finding = settle(candidates, &optima, plan.options.ranking.sharp, scorers);
     progress.advance(1);
     Some(SharpOutcome {

@@ -1,6 +1,6 @@
 //! Memory of an engine's parts in bytes, from its plan: known before any of them is made.
 
-use super::cpu::{COLUMNS, PLANES, SIDE, TOGETHER, ligand_forward};
+use super::cpu::{COLUMNS, SIDE, TOGETHER, ligand_forward, slab_length};
 use super::packed::{LANES, Packing};
 use super::plan::Plan;
 use super::receptor_spectra::LigandFunctions;
@@ -111,11 +111,13 @@ impl EngineMemory {
 fn workspace_bytes<T: Real>(plan: &Plan, ligand: &Knots, rank: usize, images: usize) -> u64 {
     let [nx, ny, nz] = plan.modes().size;
     let forward = ligand_forward::<T>(plan, rank);
-    let of_image = 2 * 2 * SIDE * nx + 2 * PLANES * nx * ny + nx * ny * nz;
+    let of_image = 2 * 2 * SIDE * nx + 2 * nx * slab_length(plan.modes());
+    let of_slab = 2 * plan.modes().planes.len() * ny + ny * nz;
     let reals = 2 * (COLUMNS * forward.line_length() + 2 * LANES)
         + 2 * rank * LANES * Packing::new(plan.modes()).count()
         + 4 * (nx / 2).next_multiple_of(LANES)
         + images * of_image
+        + of_slab
         + nx * ny * (nz + 1);
     let points = size_of::<[f64; 3]>() * ligand.len();
     (forward.workspace_bytes() + reals * size_of::<T>() + points) as u64

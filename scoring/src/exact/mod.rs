@@ -140,9 +140,8 @@ impl ExactScorer {
             .collect();
         let largest = |radii: &[f64]| radii.iter().copied().fold(0.0, f64::max);
         let tables = PairTables::new(kernel, &receptor_radii, &ligand_radii);
-        let unfiltered_reach = largest(&receptor_radii)
-            + largest(&ligand_radii)
-            + kernel.options().slice_offsets()[2];
+        let unfiltered_reach =
+            largest(&receptor_radii) + largest(&ligand_radii) + kernel.options().slice_offsets()[2];
         let blocks = Blocks::within(&points, kernel.reach().max(unfiltered_reach));
         Ok(Self {
             effects: effects

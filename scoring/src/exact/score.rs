@@ -199,7 +199,10 @@ impl ExactScorer {
             }
             (four[0] + four[2]) + (four[1] + four[3])
         };
-        for (sum, (even, odd)) in of_terms.iter_mut().zip(even_terms.into_iter().zip(odd_terms)) {
+        for (sum, (even, odd)) in of_terms
+            .iter_mut()
+            .zip(even_terms.into_iter().zip(odd_terms))
+        {
             *sum = both(even, odd);
         }
         std::array::from_fn(|kernel| both(even[kernel], odd[kernel]))

@@ -115,7 +115,10 @@ impl PairList {
                 continue;
             };
             let slack = SHIFT + ANGLE * arm.norm();
-            if !fit.receptor.excludes(&place.into(), fit.reach(site) + slack) {
+            if !fit
+                .receptor
+                .excludes(&place.into(), fit.reach(site) + slack)
+            {
                 self.list_atom(fit, site, (&arm, &place), slack);
             }
         }

@@ -15,6 +15,8 @@ use rayon::prelude::*;
 const DESCENDING: usize = 250;
 /// Places whose neighbourhood is tried, too: those of the best optima.
 const MAX_TRIED: usize = 20;
+/// Gain of the margin by that, at most but in rare cases, standard deviations (docs/research/defaults.md).
+const MOST_GAIN: f64 = 0.8;
 /// RMSD of the ligand in Å within which two optima are one place.
 const PLACE: f64 = 2.5;
 
@@ -35,12 +37,14 @@ pub(crate) struct Optima {
     pub evidence: Option<Evidence>,
 }
 
-/// Lets the best candidates of a search of this many rotations descend, and searches about the places of the best optima.
+/// Lets the best candidates of a search of this many rotations descend, and searches about the places of the best optima
+/// if that may make one stand out, or if sharp fits are requested.
 pub(crate) fn optima(
     inputs: &SharpInputs,
     candidates: &[Candidate],
     body: &RigidBody,
     rotations: usize,
+    choice: SharpChoice,
 ) -> Optima {
     let fit = SharpFit::new(inputs.bodies, inputs.polar);
     let best = candidates.get(..DESCENDING).unwrap_or(candidates);
@@ -50,7 +54,12 @@ pub(crate) fn optima(
             fit.descend(&candidate.pose, list)
         })
         .collect_into_vec(&mut of_candidates);
-    let firsts = first_of_places(&of_candidates, body);
+    let mut firsts = first_of_places(&of_candidates, body);
+    let may_stand_out = evidence_of(&firsts, rotations)
+        .is_some_and(|evidence| evidence.margin() > evidence.needed - MOST_GAIN);
+    if !may_stand_out && choice != SharpChoice::On {
+        firsts.clear();
+    }
     let tried: Vec<(usize, Optimum)> = firsts
         .get(..MAX_TRIED)
         .unwrap_or(&firsts)
@@ -64,12 +73,16 @@ pub(crate) fn optima(
     for (index, optimum) in tried {
         of_candidates[index] = Some(optimum);
     }
-    let firsts = first_of_places(&of_candidates, body).into_iter();
-    let energies: Vec<f64> = firsts.map(|(_, optimum)| optimum.energy.total()).collect();
     Optima {
-        evidence: Evidence::of(&energies, rotations),
+        evidence: evidence_of(&first_of_places(&of_candidates, body), rotations),
         of_candidates,
     }
+}
+
+/// Evidence by the optima of different places, best first.
+fn evidence_of(firsts: &[(usize, Optimum)], rotations: usize) -> Option<Evidence> {
+    let energies = firsts.iter().map(|(_, optimum)| optimum.energy.total());
+    Evidence::of(&energies.collect::<Vec<f64>>(), rotations)
 }
 
 /// The best optimum of each place with the index of its candidate, best first; ties in the order of candidates.

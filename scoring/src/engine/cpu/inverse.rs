@@ -3,63 +3,44 @@
 //! The images of one ligand's transform go through together. A column of modes and the one with -ky are multiplied for
 //! all of them while both are in the cache.
 
-use super::PLANES;
 use super::transforms::{Buffers, Transforms};
 use crate::engine::columns::Reading;
 use crate::engine::packed::Packet;
 use crate::grid_turn::GridTurn;
 use crate::peaks::{Rows, largest};
 use crate::transform::Real;
+use crate::transform::modes::ModeSet;
 use crate::transform::transpose::transpose;
 use crate::vectorized::vectorize;
 use num_complex::Complex;
+use std::ops::Range;
 
 /// Columns ky, and as many -ky, that go through the x transforms together: a cache line of a plane's rows.
 pub(in crate::engine) const SIDE: usize = 8;
 
+/// Lines of a slab that are joined together: a cache line of a row.
+const LEVELS: usize = 8;
+
 impl<T: Real> Transforms<T> {
-    /// Products of columns and their inverse along x and y: the rows along z of each turn's image.
+    /// Products of columns and their inverse along x: the slabs of each turn's image.
     pub fn products(&self, turns: &[GridTurn], work: &mut Buffers<T>) {
         vectorize!(self.multiply(turns, work));
     }
 
     #[inline(always)]
     fn multiply(&self, turns: &[GridTurn], work: &mut Buffers<T>) {
-        let half = self.plan.modes().size[2] / 2 + 1;
-        for block in (0..half).step_by(PLANES) {
-            let depth = PLANES.min(half - block);
-            for level in 0..depth {
-                self.plane(turns, block + level, level, work);
-            }
-            for image in 0..turns.len() {
-                self.pair_rows(image, block, depth, work);
-            }
+        for range in &self.plan.modes().planes {
+            self.plane(turns, range, work);
         }
     }
 
-    /// Plane kz of each image's product, transformed along x and y, into `work.planes` at `level`.
+    /// The columns `range`, which share kz, of each image's product, transformed along x, into `work.slabs`.
     #[inline(always)]
-    fn plane(&self, turns: &[GridTurn], kz: usize, level: usize, work: &mut Buffers<T>) {
-        let modes = self.plan.modes();
-        let [nx, ny, _] = modes.size;
-        let zero = Complex::new(T::zero(), T::zero());
-        let place = |image: usize| {
-            let start = (image * PLANES + level) * nx * ny;
-            start..start + nx * ny
-        };
-        let Some(range) = modes.planes.get(kz) else {
-            for image in 0..turns.len() {
-                work.planes[place(image)].fill(zero);
-            }
-            return;
-        };
+    fn plane(&self, turns: &[GridTurn], range: &Range<usize>, work: &mut Buffers<T>) {
+        let nx = self.plan.modes().size[0];
+        let stride = slab_length(self.plan.modes());
         // ky comes as 0, 1, ..., n, -n, ..., -1.
         let count = range.len() / 2 + 1;
-        for image in 0..turns.len() {
-            for row in work.planes[place(image)].chunks_exact_mut(ny) {
-                row[count..ny + 1 - count].fill(zero);
-            }
-        }
         for first in (0..count).step_by(SIDE) {
             let end = (first + SIDE).min(count);
             // Columns with ky from `first` on, then those with -ky, in rising order.
@@ -81,19 +62,16 @@ impl<T: Real> Transforms<T> {
             let products = &mut work.product[..turns.len() * of_image];
             self.inverse_x
                 .process_with_scratch(products, &mut work.scratch);
-            for (image, products) in products.chunks_exact(of_image).enumerate() {
-                let plane = &mut work.planes[place(image)];
+            let slabs = work.slabs.chunks_exact_mut(nx * stride);
+            for (products, slabs) in products.chunks_exact(of_image).zip(slabs) {
                 let (up, down) = products.split_at(plus * nx);
-                transpose((up, &mut plane[first..]), plus, 0..nx, [nx, ny]);
+                let from = range.start + first;
+                transpose((up, &mut slabs[from..]), plus, 0..nx, [nx, stride]);
                 if minus > 0 {
-                    let lowest = ny + 1 - end;
-                    transpose((down, &mut plane[lowest..]), minus, 0..nx, [nx, ny]);
+                    let lowest = range.end + 1 - end;
+                    transpose((down, &mut slabs[lowest..]), minus, 0..nx, [nx, stride]);
                 }
             }
-        }
-        for image in 0..turns.len() {
-            self.inverse_y
-                .process_with_scratch(&mut work.planes[place(image)], &mut work.scratch);
         }
     }
 
@@ -116,44 +94,37 @@ impl<T: Real> Transforms<T> {
         reading.multiply(rank, side, pair, sums, product);
     }
 
-    /// Joins the rows of an image's `depth` planes from kz = `block` on in pairs.
-    #[inline(always)]
-    fn pair_rows(&self, image: usize, block: usize, depth: usize, work: &mut Buffers<T>) {
-        let [nx, ny, nz] = self.plan.modes().size;
-        let planes = &work.planes[image * PLANES * nx * ny..(image + 1) * PLANES * nx * ny];
-        let rows = &mut work.rows[image * nx * ny / 2 * nz..(image + 1) * nx * ny / 2 * nz];
-        for (pair, row) in rows.chunks_exact_mut(nz).enumerate() {
-            for level in 0..depth {
-                let at = level * nx * ny + 2 * pair;
-                let (a, b) = (planes[at], planes[at + 1]);
-                let kz = block + level;
-                // A + iB at kz, and A* + iB* at -kz; the mean of a real row is real, and the Nyquist plane is empty.
-                if kz == 0 {
-                    row[0] = Complex::new(a.re, b.re);
-                } else {
-                    row[kz] = Complex::new(a.re - b.im, a.im + b.re);
-                    row[nz - kz] = Complex::new(a.re + b.im, b.re - a.im);
-                }
-            }
-        }
-    }
-
-    /// Rows of an image: complex to real along z, two at a time, and the best of each row.
+    /// An image from its slabs of one x, each of which stays in the cache: along y, then complex to real along z, two rows
+    /// at a time, and the best of each row.
     pub fn image(&self, image: usize, work: &mut Buffers<T>, grid: &mut Rows<T>) {
-        vectorize!(self.rows_to_grid(image, work, grid));
+        vectorize!(self.slabs_to_grid(image, work, grid));
     }
 
     #[inline(always)]
-    fn rows_to_grid(&self, image: usize, work: &mut Buffers<T>, grid: &mut Rows<T>) {
-        let [nx, ny, nz] = self.plan.modes().size;
-        let planes = work.rows[image * nx * ny / 2 * nz..(image + 1) * nx * ny / 2 * nz]
-            .chunks_exact_mut(ny / 2 * nz)
+    fn slabs_to_grid(&self, image: usize, work: &mut Buffers<T>, grid: &mut Rows<T>) {
+        let modes = self.plan.modes();
+        let [nx, ny, nz] = modes.size;
+        let zero = Complex::new(T::zero(), T::zero());
+        let stride = slab_length(modes);
+        let slabs = work.slabs[image * nx * stride..(image + 1) * nx * stride]
+            .chunks_exact(stride)
             .zip(grid.values.chunks_exact_mut(ny * nz))
             .zip(grid.best.chunks_exact_mut(ny));
-        for ((pairs, grid), best) in planes {
+        for ((slab, grid), best) in slabs {
+            for (line, range) in work.along_y.chunks_exact_mut(ny).zip(&modes.planes) {
+                let count = range.len() / 2 + 1;
+                let (up, down) = slab[range.clone()].split_at(count);
+                line[..count].copy_from_slice(up);
+                line[count..ny + 1 - count].fill(zero);
+                line[ny + 1 - count..].copy_from_slice(down);
+            }
+            self.inverse_y
+                .process_with_scratch(&mut work.along_y, &mut work.scratch);
+            join_rows(&work.along_y, &mut work.rows, [ny, nz]);
             self.inverse_z
-                .process_with_scratch(pairs, &mut work.scratch);
-            for ((pair, rows), best) in pairs
+                .process_with_scratch(&mut work.rows, &mut work.scratch);
+            for ((pair, rows), best) in work
+                .rows
                 .chunks_exact(nz)
                 .zip(grid.chunks_exact_mut(2 * nz))
                 .zip(best.chunks_exact_mut(2))
@@ -161,6 +132,36 @@ impl<T: Real> Transforms<T> {
                 let (even, odd) = rows.split_at_mut(nz);
                 separate(pair, even, odd);
                 [best[0], best[1]] = [largest(even), largest(odd)];
+            }
+        }
+    }
+}
+
+/// Numbers of a slab of one x: those of all columns, and so many more that slabs do not share cache sets.
+pub(in crate::engine) fn slab_length(modes: &ModeSet) -> usize {
+    8 * (modes.columns.len().div_ceil(8) | 1)
+}
+
+/// Joins the rows along z of real numbers in pairs, from `[kz][y]` to `[pair of y][kz]`: A + iB at kz, and A* + iB* at
+/// -kz. The mean of a real row is real, and the Nyquist plane is empty.
+#[inline(always)]
+fn join_rows<T: Real>(lines: &[Complex<T>], rows: &mut [Complex<T>], [ny, nz]: [usize; 2]) {
+    let zero = Complex::new(T::zero(), T::zero());
+    let depth = lines.len() / ny;
+    for block in (0..depth).step_by(LEVELS) {
+        let lines = &lines[block * ny..];
+        let levels = LEVELS.min(depth - block);
+        for (pair, row) in rows.chunks_exact_mut(nz).enumerate() {
+            for (level, line) in lines.chunks_exact(ny).take(levels).enumerate() {
+                let (a, b) = (line[2 * pair], line[2 * pair + 1]);
+                let kz = block + level;
+                if kz == 0 {
+                    row[0] = Complex::new(a.re, b.re);
+                    row[depth..=nz - depth].fill(zero);
+                } else {
+                    row[kz] = Complex::new(a.re - b.im, a.im + b.re);
+                    row[nz - kz] = Complex::new(a.re + b.im, b.re - a.im);
+                }
             }
         }
     }

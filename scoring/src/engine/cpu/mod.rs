@@ -10,7 +10,7 @@
 mod inverse;
 mod transforms;
 
-pub(in crate::engine) use inverse::SIDE;
+pub(in crate::engine) use inverse::{SIDE, slab_length};
 pub(in crate::engine) use transforms::{Transforms, ligand_forward};
 
 use super::plan::Plan;
@@ -25,8 +25,6 @@ use transforms::Buffers;
 
 /// Columns that go through the x transforms together.
 pub(super) const COLUMNS: usize = 8;
-/// Planes kz that go through the y transforms together: a cache line of the spectrum's rows.
-pub(super) const PLANES: usize = 8;
 
 /// Images that go through the products and inverse transforms together at the most: more would not share a column.
 pub const TOGETHER: usize = 4;
@@ -182,7 +180,7 @@ impl CpuEngine {
     }
 
     /// Seconds of each stage of a rotation: spreading, forward planes, forward columns (these three serve all images); then
-    /// for one image the product with the inverse along x and y, and the rows.
+    /// for one image the product with the inverse along x, and that along y and z.
     pub fn stage_seconds(&self, rotation: &UnitQuaternion<f64>, work: &mut Workspace) -> [f64; 5] {
         let mut last = std::time::Instant::now();
         let mut lap = || {

@@ -1,8 +1,8 @@
 //! The transforms of a pair in one floating-point type: everything that does not turn, for a rank of the lifted axis,
 //! and the turned ligand's transform.
 
-use super::inverse::SIDE;
-use super::{COLUMNS, PLANES};
+use super::COLUMNS;
+use super::inverse::{SIDE, slab_length};
 use crate::engine::columns::Reading;
 use crate::engine::packed::{LANES, Packet, Packing, packets_of_half};
 use crate::engine::plan::Plan;
@@ -53,9 +53,11 @@ pub(in crate::engine) struct Buffers<T> {
     /// [image][column][x].
     pub product: Vec<Complex<T>>,
     pub scratch: Vec<Complex<T>>,
-    /// [image][kz in block][x][y].
-    pub planes: Vec<Complex<T>>,
-    /// [image][x][pair of y][kz]: two rows' spectra as one, A + iB.
+    /// [image][x][column].
+    pub slabs: Vec<Complex<T>>,
+    /// [kz][y] of one x.
+    pub along_y: Vec<Complex<T>>,
+    /// [pair of y][kz] of one x: two rows' spectra as one, A + iB.
     pub rows: Vec<Complex<T>>,
 }
 
@@ -212,8 +214,9 @@ impl<T: Real> Transforms<T> {
             sums: vec![Packet::zero(); 2 * (nx / 2).div_ceil(LANES)],
             product: vec![zero; images * 2 * SIDE * nx],
             scratch: vec![zero; scratch],
-            planes: vec![zero; images * PLANES * nx * ny],
-            rows: vec![zero; images * nx * ny / 2 * nz],
+            slabs: vec![zero; images * nx * slab_length(self.plan.modes())],
+            along_y: vec![zero; self.plan.modes().planes.len() * ny],
+            rows: vec![zero; ny / 2 * nz],
         }
     }
 

@@ -248,7 +248,10 @@ impl EnergyTable {
 #[inline(always)]
 fn node(place: f64) -> (usize, f64) {
     let rounded = place + ROUNDING;
-    (rounded.to_bits() as u32 as usize, place - (rounded - ROUNDING))
+    (
+        rounded.to_bits() as u32 as usize,
+        place - (rounded - ROUNDING),
+    )
 }
 
 /// Energy in RT of two atoms at a distance, from the row of one and the kind of the other.
@@ -281,7 +284,9 @@ pub(super) fn smooth_energy(row: &[[f32; NODES]], kind: usize, distance: f64) ->
 /// Energies at a node and those beside it.
 #[inline(always)]
 fn nodes(row: &[[f32; NODES]], kind: usize, middle: usize) -> [f64; 3] {
-    let nodes = row.get(kind).and_then(|nodes| nodes.get(middle..middle + 3));
+    let nodes = row
+        .get(kind)
+        .and_then(|nodes| nodes.get(middle..middle + 3));
     debug_assert!(nodes.is_some(), "a kind or node that is not there");
     match nodes {
         Some(&[low, middle, high]) => [low, middle, high].map(f64::from),

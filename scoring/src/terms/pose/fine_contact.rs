@@ -51,7 +51,12 @@ fn term(
     let step = |range, a, b| -weight * (energy(range, a, b) - energy(range + 1, a, b));
     let steps: [[[f64; 3]; TYPES.len()]; TYPES.len()] =
         from_fn(|a| from_fn(|b| from_fn(|range| step(range, a, b))));
-    let bodies = Bodies::new(receptor, ligand, |knots| &knots.contact_types, (TYPES.len(), REACH));
+    let bodies = Bodies::new(
+        receptor,
+        ligand,
+        |knots| &knots.contact_types,
+        (TYPES.len(), REACH),
+    );
     Box::new(move |pose, _| {
         bodies.sum(
             pose,

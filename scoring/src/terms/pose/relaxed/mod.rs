@@ -140,8 +140,7 @@ impl Relaxation {
         let (mut at, mut collected) = (none, none);
         for longest in MAX_STEPS {
             at = self.slope(workspace, &at).step(&at, radius, longest);
-            self.atoms
-                .renew(&mut collected, &at, &start, workspace);
+            self.atoms.renew(&mut collected, &at, &start, workspace);
         }
         let after = self.collected_energy(workspace, &at);
         if after < before {
@@ -222,8 +221,7 @@ impl Relaxation {
             |sums: &mut AtomSlope, atom, eight| {
                 let soft = self.soft(&atom.site, eight);
                 let [x, y, z] = &eight.between;
-                let [cx, cy, cz] =
-                    [x, y, z].map(|of| each(|lane| soft.stiffness[lane] * of[lane]));
+                let [cx, cy, cz] = [x, y, z].map(|of| each(|lane| soft.stiffness[lane] * of[lane]));
                 let products = [
                     (&soft.rise, x),
                     (&soft.rise, y),
@@ -246,8 +244,7 @@ impl Relaxation {
                 let contacts = total(&sums.contacts);
                 if contacts > 0.0 {
                     slope.contacts += contacts;
-                    let [gx, gy, gz, xx, xy, xz, yy, yz, zz] =
-                        sums.products.each_ref().map(total);
+                    let [gx, gy, gz, xx, xy, xz, yy, yz, zz] = sums.products.each_ref().map(total);
                     let gradient = Vector3::new(gx, gy, gz);
                     let curvature = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
                     // Each body makes half of a rotation about the middle between their places.
@@ -294,9 +291,7 @@ impl Relaxation {
             energy: each(|lane| {
                 smooth[0][lane] + SOFT_CORE_STIFFNESS * overlaps[lane] * overlaps[lane]
             }),
-            rise: each(|lane| {
-                smooth[1][lane] * inverse[lane] - SOFT_CORE_STIFFNESS * lacks[lane]
-            }),
+            rise: each(|lane| smooth[1][lane] * inverse[lane] - SOFT_CORE_STIFFNESS * lacks[lane]),
             stiffness: each(|lane| {
                 let part = (overlaps[lane] * (1.0 / FULL_STIFFNESS)).min(1.0);
                 2.0 * SOFT_CORE_STIFFNESS * closeness[lane] * part
