@@ -67,8 +67,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
         println!(
             "  ms for {images} rotations: spreading {:.3}, forward z and y {:.3}, x {:.3}; for each: \
-             product with inverse x and y {:.3}, \
-             inverse z {:.3}; a rotation in all {:.3}",
+             product with inverse x {:.3}, \
+             inverse y and z {:.3}; a rotation in all {:.3}",
             1e3 * spread,
             1e3 * planes,
             1e3 * columns,

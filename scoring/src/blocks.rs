@@ -174,16 +174,13 @@ impl Blocks {
 
     /// Visits the numbers of the blocks whose boxes lie within `reach` of `x`, by rising number.
     #[inline(always)]
-    pub fn visit_blocks<S: Simd>(
+    fn visit_blocks<S: Simd>(
         &self,
         simd: S,
         x: &[f64; 3],
         reach: f64,
         mut visit: impl FnMut(u32),
     ) {
-        if self.excludes(x, reach) {
-            return;
-        }
         let square_reach = reach * reach;
         let everywhere = x.map(|x| simd.splat_f64s(x));
         for (group, first) in self.groups.iter().zip((0u32..).step_by(GROUP)) {
@@ -216,6 +213,9 @@ impl Blocks {
         near: &mut NearPoints,
         mut visit: impl FnMut(&NearPoints),
     ) {
+        if self.excludes(x, reach) {
+            return;
+        }
         let everywhere = x.map(|x| simd.splat_f64s(x));
         near.clear();
         self.visit_blocks(

@@ -5,7 +5,7 @@
 use nalgebra::Vector3;
 
 /// Edges of a cell in the reach that bounds are for.
-const EDGES: usize = 4;
+const EDGES: usize = 6;
 /// Squares of distances in cell edges that exclude every place within the reach, and what is not known to be less.
 const FAR: u8 = (EDGES * EDGES) as u8;
 /// Most cells: where points are spread out they grow.
