@@ -174,13 +174,7 @@ impl Blocks {
 
     /// Visits the numbers of the blocks whose boxes lie within `reach` of `x`, by rising number.
     #[inline(always)]
-    fn visit_blocks<S: Simd>(
-        &self,
-        simd: S,
-        x: &[f64; 3],
-        reach: f64,
-        mut visit: impl FnMut(u32),
-    ) {
+    fn visit_blocks<S: Simd>(&self, simd: S, x: &[f64; 3], reach: f64, mut visit: impl FnMut(u32)) {
         let square_reach = reach * reach;
         let everywhere = x.map(|x| simd.splat_f64s(x));
         for (group, first) in self.groups.iter().zip((0u32..).step_by(GROUP)) {
