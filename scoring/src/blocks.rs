@@ -1,7 +1,7 @@
 //! The points of a body in compact blocks of eight, side by side for vector registers, and those within reach of a place.
 //!
 //! Halving along the longest axis puts neighbours together. Every set of blocks is a full binary tree up to its last
-//! branch, so sixteen blocks in a row share a branch: one box test passes or drops them all. Of the blocks that pass,
+//! branch, so sixteen blocks in a row share a branch: one box test passes or drops them all, sixteen tests at a time. Of the blocks that pass,
 //! the points within reach are collected, so that the later and dearer steps handle these alone.
 
 // Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
@@ -24,6 +24,22 @@ struct Block {
 }
 
 impl Block {
+    fn bounds(&self) -> Bounds {
+        let side = |start: f64, of: fn(f64, f64) -> f64| {
+            let places = |own: &[f64; LANES]| {
+                own.iter()
+                    .copied()
+                    .filter(|x| x.is_finite())
+                    .fold(start, of)
+            };
+            self.positions.each_ref().map(places)
+        };
+        [
+            side(f64::INFINITY, f64::min),
+            side(f64::NEG_INFINITY, f64::max),
+        ]
+    }
+
     /// Squared distances in Å^2 to a place.
     #[inline(always)]
     fn squares<S: Simd>(&self, simd: S, x: &[S::f64s; 3]) -> [f64; LANES] {
@@ -42,23 +58,51 @@ impl Block {
     }
 }
 
-/// Bounding boxes: of a group and, [axis][block], of its blocks. A block that is not there has an empty box, infinitely
+/// Low and high corner of a bounding box, in Å.
+type Bounds = [[f64; 3]; 2];
+
+/// Bounding boxes of sixteen blocks or groups, [axis][member]. A member that is not there has an empty box, infinitely
 /// far away.
-struct Group {
-    low: [f64; 3],
-    high: [f64; 3],
-    block_low: [[f64; GROUP]; 3],
-    block_high: [[f64; GROUP]; 3],
+struct Boxes {
+    low: [[f64; GROUP]; 3],
+    high: [[f64; GROUP]; 3],
 }
 
-impl Group {
-    /// Squared distances in Å^2 of a place to its blocks' boxes.
+impl Boxes {
+    fn of(members: &[Bounds]) -> Self {
+        let side = |end: usize, missing: f64| {
+            [0, 1, 2].map(|axis| {
+                std::array::from_fn(|index| {
+                    members
+                        .get(index)
+                        .map_or(missing, |bounds| bounds[end][axis])
+                })
+            })
+        };
+        Self {
+            low: side(0, f64::INFINITY),
+            high: side(1, f64::NEG_INFINITY),
+        }
+    }
+
+    /// The box around all.
+    fn whole(&self) -> Bounds {
+        let low = self
+            .low
+            .map(|lows| lows.into_iter().fold(f64::INFINITY, f64::min));
+        let high = self
+            .high
+            .map(|highs| highs.into_iter().fold(f64::NEG_INFINITY, f64::max));
+        [low, high]
+    }
+
+    /// Those whose squared distance to a place is below a limit in Å^2, as bits.
     #[inline(always)]
-    fn squares<S: Simd>(&self, simd: S, x: &[S::f64s; 3]) -> [f64; GROUP] {
+    fn near<S: Simd>(&self, simd: S, x: &[S::f64s; 3], limit: f64) -> u32 {
         let mut squares = [0.0; GROUP];
         let zero = simd.splat_f64s(0.0);
-        let lows = self.block_low.each_ref().map(|own| vectors::<S>(own));
-        let highs = self.block_high.each_ref().map(|own| vectors::<S>(own));
+        let lows = self.low.each_ref().map(|own| vectors::<S>(own));
+        let highs = self.high.each_ref().map(|own| vectors::<S>(own));
         for (index, square) in vectors_mut::<S>(&mut squares).iter_mut().enumerate() {
             let mut gaps = [zero; 3];
             for axis in 0..3 {
@@ -70,7 +114,10 @@ impl Group {
             let sum = simd.mul_add_e_f64s(y, y, simd.mul_f64s(x, x));
             *square = simd.mul_add_e_f64s(z, z, sum);
         }
-        squares
+        let (halves, _) = squares.as_chunks::<HALF>();
+        halves.iter().enumerate().fold(0, |near, (index, half)| {
+            near | (below(simd, *half, limit) as u32) << (HALF * index)
+        })
     }
 }
 
@@ -80,7 +127,10 @@ pub(crate) struct Blocks {
     blocks: Vec<Block>,
     /// Indices of the points, block by block.
     order: Vec<usize>,
-    groups: Vec<Group>,
+    /// Boxes of the blocks, group by group.
+    groups: Vec<Boxes>,
+    /// Boxes of the groups, sixteen by sixteen.
+    above: Vec<Boxes>,
     floors: Option<DistanceFloors>,
 }
 
@@ -108,33 +158,13 @@ impl Blocks {
                 }),
             })
             .collect();
-        let groups = blocks
-            .chunks(GROUP)
-            .map(|members| {
-                let bound = |start: f64, of: fn(f64, f64) -> f64| {
-                    [0, 1, 2].map(|axis| {
-                        std::array::from_fn::<f64, GROUP, _>(|index| {
-                            members.get(index).map_or(start, |block| {
-                                let places = block.positions[axis].into_iter();
-                                places.filter(|x| x.is_finite()).fold(start, of)
-                            })
-                        })
-                    })
-                };
-                let block_low = bound(f64::INFINITY, f64::min);
-                let block_high = bound(f64::NEG_INFINITY, f64::max);
-                Group {
-                    low: block_low.map(|lows| lows.into_iter().fold(f64::INFINITY, f64::min)),
-                    high: block_high
-                        .map(|highs| highs.into_iter().fold(f64::NEG_INFINITY, f64::max)),
-                    block_low,
-                    block_high,
-                }
-            })
-            .collect();
+        let bounds: Vec<Bounds> = blocks.iter().map(Block::bounds).collect();
+        let groups: Vec<Boxes> = bounds.chunks(GROUP).map(Boxes::of).collect();
+        let bounds: Vec<Bounds> = groups.iter().map(Boxes::whole).collect();
         Self {
             blocks,
             order,
+            above: bounds.chunks(GROUP).map(Boxes::of).collect(),
             groups,
             floors: None,
         }
@@ -177,22 +207,20 @@ impl Blocks {
     fn visit_blocks<S: Simd>(&self, simd: S, x: &[f64; 3], reach: f64, mut visit: impl FnMut(u32)) {
         let square_reach = reach * reach;
         let everywhere = x.map(|x| simd.splat_f64s(x));
-        for (group, first) in self.groups.iter().zip((0u32..).step_by(GROUP)) {
-            let square: f64 = (0..3)
-                .map(|axis| gap(x[axis], group.low[axis], group.high[axis]).powi(2))
-                .sum();
-            if square >= square_reach {
-                continue;
-            }
-            let mut within = 0u32;
-            let squares = group.squares(simd, &everywhere);
-            let (halves, _) = squares.as_chunks::<HALF>();
-            for (index, half) in halves.iter().enumerate() {
-                within |= (below(simd, *half, square_reach) as u32) << (HALF * index);
-            }
-            while within != 0 {
-                visit(first + within.trailing_zeros());
-                within &= within - 1;
+        for (boxes, first) in self.above.iter().zip((0..).step_by(GROUP)) {
+            let mut groups = boxes.near(simd, &everywhere, square_reach);
+            while groups != 0 {
+                let group: usize = first + groups.trailing_zeros() as usize;
+                groups &= groups - 1;
+                let Some(boxes) = self.groups.get(group) else {
+                    debug_assert!(false, "a group that is not there lies within reach");
+                    continue;
+                };
+                let mut blocks = boxes.near(simd, &everywhere, square_reach);
+                while blocks != 0 {
+                    visit((group * GROUP) as u32 + blocks.trailing_zeros());
+                    blocks &= blocks - 1;
+                }
             }
         }
     }
@@ -307,15 +335,6 @@ impl Blocks {
             |simd| blocks.visit_blocks(simd, x, reach, visit)
         );
     }
-}
-
-/// Distance along one axis from a coordinate to an interval; 0 inside it. Comparisons rather than `f64::max`, whose
-/// care for NaN costs a blend each.
-#[inline(always)]
-fn gap(x: f64, low: f64, high: f64) -> f64 {
-    let (below, above) = (low - x, x - high);
-    let outside = if below > above { below } else { above };
-    if outside > 0.0 { outside } else { 0.0 }
 }
 
 /// Orders `members` so that blocks in a row are compact: halves along the longest axis of the box, the first half a
