@@ -1,8 +1,9 @@
 //! The points of a body in compact blocks of eight, side by side for vector registers, and those within reach of a place.
 //!
 //! Halving along the longest axis puts neighbours together. Every set of blocks is a full binary tree up to its last
-//! branch, so sixteen blocks in a row share a branch: one box test passes or drops them all, sixteen tests at a time. Of the blocks that pass,
-//! the points within reach are collected, so that the later and dearer steps handle these alone.
+//! branch, so sixteen blocks in a row share a branch: one box test passes or drops them all. Sixteen boxes are tested at
+//! a time. Of the blocks that pass, the points within reach are collected, so that the later and dearer steps handle
+//! these alone.
 
 // Loops over lanes index several arrays at once: as iterators they read worse and vectorise no better.
 #![allow(clippy::needless_range_loop)]
@@ -135,7 +136,7 @@ pub(crate) struct Blocks {
 }
 
 impl Blocks {
-    /// Blocks of points that are mostly asked about places farther than `reach`, a length above zero.
+    /// Blocks that quickly tell places farther from all points than `reach`, a length above zero.
     pub fn within(points: &[Vector3<f64>], reach: f64) -> Self {
         Self {
             floors: Some(DistanceFloors::new(points, reach)),
@@ -274,7 +275,7 @@ impl Blocks {
         }
     }
 
-    /// Adds the points of a block within reach of a place, and visits what is listed if there is no room.
+    /// Adds the points of a block within reach of a place. If there is no room, those before are visited first.
     #[inline(always)]
     fn add_near<S: Simd>(
         &self,

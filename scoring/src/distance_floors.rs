@@ -6,7 +6,7 @@ use nalgebra::Vector3;
 
 /// Edges of a cell in the reach that bounds are for.
 const EDGES: usize = 6;
-/// Squares of distances in cell edges that exclude every place within the reach, and what is not known to be less.
+/// Square, in cell edges, of the distance from which no place is within the reach. Cells farther away have it, too.
 const FAR: u8 = (EDGES * EDGES) as u8;
 /// Most cells: where points are spread out they grow.
 const MAX_CELLS: f64 = 4e6;

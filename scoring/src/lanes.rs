@@ -3,6 +3,9 @@
 use crate::blocks::LANES;
 use std::ops::Add;
 
+/// 1.5 * 2^52: added to a number below 2^31 in size, it leaves that number, rounded, in the sum's low bits.
+pub(crate) const ROUNDING: f64 = 6755399441055744.0;
+
 /// A value for each lane.
 #[inline(always)]
 pub(crate) fn each<T: Copy + Default>(value: impl Fn(usize) -> T) -> [T; LANES] {

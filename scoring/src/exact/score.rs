@@ -146,6 +146,7 @@ impl ExactScorer {
         terms: &[ActiveOf],
         of_terms: &mut [f64; MOST_TERMS],
     ) -> [f64; KERNELS] {
+        const { assert!(MOST_TERMS == 3, "a further effect needs a further arm") };
         match *terms {
             [] => self.add_up_with(simd, near, shape, [], of_terms),
             [a] => self.add_up_with(simd, near, shape, [a], of_terms),

@@ -9,6 +9,7 @@
 use crate::blocks::{Blocks, LANES, vectors, vectors_mut};
 use crate::kernel::RankingKernel;
 use crate::kernel::table::{PanelFit, TERMS};
+use crate::lanes::ROUNDING;
 use crate::terms::effect::{ActiveTerm, Effect, Label};
 use pulp::Simd;
 
@@ -16,9 +17,6 @@ use pulp::Simd;
 #[derive(Clone, Copy, Debug)]
 #[repr(align(64))]
 pub(super) struct Line(pub [f64; TERMS]);
-
-/// 1.5 * 2^52: added to a number below 2^31 in size, it leaves that number, rounded, in the sum's low bits.
-const ROUNDING: f64 = 6755399441055744.0;
 
 /// Tables of all pairs of radii.
 pub(super) struct PairTables {

@@ -148,7 +148,7 @@ pub struct CollisionReport {
     /// Bounds of the signed distance, if requested.
     pub distance: Option<DistanceBounds>,
     /// Distance in SE(3) ([`super::motion`]) within which every pose has the same verdict, if distances are requested:
-    /// zero if that is undecided. It is a lower bound.
+    /// zero if that is undecided, and for hits in which no inner balls meet. It is a lower bound.
     pub pose_tolerance: Option<f64>,
     /// Shared volume, if requested.
     pub shared_volume: Option<SharedVolume>,

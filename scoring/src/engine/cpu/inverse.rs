@@ -137,7 +137,7 @@ impl<T: Real> Transforms<T> {
     }
 }
 
-/// Numbers of a slab of one x: those of all columns, and so many more that slabs do not share cache sets.
+/// Numbers of a slab of one x: those of all columns, filled up to an odd number of cache lines, so that slabs do not share cache sets.
 pub(in crate::engine) fn slab_length(modes: &ModeSet) -> usize {
     8 * (modes.columns.len().div_ceil(8) | 1)
 }

@@ -2,6 +2,7 @@
 
 use super::bodies::Bodies;
 use super::{PoseTerm, TermDefinition, UNRELAXED};
+use crate::lanes::ROUNDING;
 use crate::terms::{built_in, table_lines, wrong};
 use knotdock_structures::{Error, Knots};
 use serde::{Deserialize, Serialize};
@@ -200,9 +201,6 @@ pub(super) const REACH: f64 = DISTANCES[DISTANCES.len() - 1] + STEP;
 pub(super) const SMOOTH_REACH: f64 = REACH + 0.5 * STEP;
 /// Energies stored for a pair of kinds: the first twice, those of the potential, then zeros.
 const NODES: usize = DISTANCES.len() + 3;
-
-/// 1.5 * 2^52: added to a number below 2^31 in size, it leaves that number, rounded, in the sum's low bits.
-const ROUNDING: f64 = 6755399441055744.0;
 
 /// Energies by the kinds of two atoms and their distance, joined by straight lines.
 ///

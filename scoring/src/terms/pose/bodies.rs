@@ -22,7 +22,9 @@ pub(super) struct Bodies {
 }
 
 impl Bodies {
-    /// Takes the knots whose type is below `kinds`, for sums over pairs nearer than `reach` (Å). `types` returns the type of each knot, or nothing for a set
+    /// Takes the knots whose type is below `kinds`, for sums over pairs nearer than `reach` (Å).
+    ///
+    /// `types` returns the type of each knot, or nothing for a set
     /// without types.
     pub fn new(
         receptor: &Knots,
@@ -44,7 +46,9 @@ impl Bodies {
         }
     }
 
-    /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs within reach. `value` must be `#[inline(always)]`, so that it is compiled for the vector registers of the sum.
+    /// Sum at a pose of the ligand of `value(receptor type, ligand type, distance in Å)` over the pairs within reach.
+    ///
+    /// `value` must be `#[inline(always)]`, so that it is compiled for the vector registers of the sum.
     pub fn sum(&self, pose: &Pose, value: impl Fn(usize, usize, f64) -> f64) -> f64 {
         let bodies = self;
         with_simd!(
