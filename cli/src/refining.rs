@@ -41,9 +41,9 @@ impl MatchedNative {
     }
 
     fn qualities(&self, row: &PoseRow, refined: &Refined) -> Result<[PoseQuality; 2], Error> {
-        let after = match &refined.packed {
+        let after = match &refined.molecules {
             None => self.evaluator.evaluate(&refined.pose),
-            // Contacts are of all heavy atoms, so packed molecules are matched anew.
+            // Contacts are of all heavy atoms, so molecules with moved atoms are matched anew.
             Some(pair) => {
                 let evaluator = self
                     .files
@@ -113,7 +113,7 @@ impl<'a> Refining<'a> {
         Ok(all)
     }
 
-    /// Refines and writes a pose; its row and the complex's chains. Packed molecules are dropped to save memory.
+    /// Refines and writes a pose; its row and the complex's chains. Moved molecules are dropped to save memory.
     fn one(
         &self,
         row: &PoseRow,
@@ -122,10 +122,8 @@ impl<'a> Refining<'a> {
         let mut refined = self.refiner.refine(&row.pose, list)?;
         let quality = self.known.map(|known| known.qualities(row, &refined));
         let quality = quality.transpose()?;
-        let packed = refined.packed.take();
-        let molecules = packed
-            .as_ref()
-            .map_or(self.pair, |packed| packed.each_ref());
+        let moved = refined.molecules.take();
+        let molecules = moved.as_ref().map_or(self.pair, |moved| moved.each_ref());
         let placed = [PoseRow {
             rank: row.rank,
             pose: refined.pose,

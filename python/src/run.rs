@@ -24,6 +24,7 @@ pub fn dock(
     listener: &Bound<'_, PyAny>,
 ) -> PyResult<Run> {
     let mut read = DockOptions::default();
+    let names: Vec<String> = options.iter().map(|(name, _)| name.clone()).collect();
     for (name, text) in options {
         let Some(option) = option_named(&name) else {
             let message = format!("there is no option {name}");
@@ -37,6 +38,7 @@ pub fn dock(
         set.map_err(|error| exception(py, &error))?;
     }
     let [receptor, ligand] = [receptor, ligand].map(|molecule| molecule.0.clone());
+    let read = read.of_ligand(&ligand, |name| names.iter().any(|given| given == name));
     let (run, _) = work_beside(py, listener, move |events| {
         let docking = Docking::new(&receptor, &ligand);
         docking.options(&read).progress(events).run()

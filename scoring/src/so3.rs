@@ -221,8 +221,7 @@ pub fn covering_radius(set: &[UnitQuaternion<f64>]) -> f64 {
     };
     // About 4e8 comparisons at most: measuring a set of a million takes no longer than making it.
     let starts = (1_500_000 / set.len().max(1)).clamp(8, 384);
-    let mut worst = 1.0f32;
-    for start in 0..starts {
+    let farthest = |start: usize| {
         // A spiral of another size samples SO(3) independently of the set.
         let q = rotation(start, starts);
         let mut best = [q.w as f32, q.i as f32, q.j as f32, q.k as f32];
@@ -246,8 +245,10 @@ pub fn covering_radius(set: &[UnitQuaternion<f64>]) -> f64 {
                 step *= 0.5;
             }
         }
-        worst = worst.min(cosine);
-    }
+        cosine
+    };
+    let worst = (0..starts).into_par_iter().map(farthest);
+    let worst = worst.reduce(|| 1.0, f32::min);
     2.0 * f64::from(worst.min(1.0)).acos()
 }
 

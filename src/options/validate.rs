@@ -1,6 +1,8 @@
 //! Refusal of options out of range, and of options that do not go together.
 
 use knotdock_structures::Error;
+use knotdock_structures::molecule::Molecule;
+use nalgebra::Vector3;
 
 use super::definition::{Definition, name_of};
 use super::{
@@ -20,6 +22,21 @@ pub(crate) fn refused(name: &str, value: &str, bound: &str) -> Error {
 /// The refusal of an option without effect in a run; `context` states why.
 pub(crate) fn left_out(name: &str, value: &str, context: &str) -> Error {
     refused(name, value, &format!("left out {context}")).help("leave the option out")
+}
+
+/// Radius of gyration in Å below which a ligand needs fewer rotations than the default.
+const SMALL: f64 = 15.5;
+/// Rotations of the smallest ligands.
+const FEWEST_ROTATIONS: usize = 600;
+
+/// Radius of gyration of a molecule's heavy atoms, Å.
+fn radius_of_gyration(molecule: &Molecule) -> f64 {
+    let heavy = molecule.atoms.iter().filter(|atom| !atom.is_hydrogen());
+    let places: Vec<Vector3<f64>> = heavy.map(|atom| Vector3::from(atom.position)).collect();
+    let count = places.len().max(1) as f64;
+    let middle = places.iter().sum::<Vector3<f64>>() / count;
+    let squares = places.iter().map(|place| (place - middle).norm_squared());
+    (squares.sum::<f64>() / count).sqrt()
 }
 
 impl DockOptions {
@@ -51,6 +68,26 @@ impl DockOptions {
                 .interface_ligand
                 .clone_from(&restraints.interface_receptor);
         }
+        self
+    }
+
+    /// The options of a search with a ligand: fewer rotations of a small one, unless `is_given` names an option that
+    /// decides on them.
+    ///
+    /// Their number falls with the cube of the radius of gyration, so that neighbouring rotations move a ligand's
+    /// surface by one length, whatever its size (docs/research/defaults.md).
+    #[must_use]
+    pub fn of_ligand(mut self, ligand: &Molecule, is_given: impl Fn(&str) -> bool) -> Self {
+        if ["rotations", "fine_rotations", "symmetry"]
+            .into_iter()
+            .any(is_given)
+        {
+            return self;
+        }
+        let share = (radius_of_gyration(ligand) / SMALL).powi(3);
+        let most = self.search.rotations;
+        let count = (most as f64 * share).round() as usize;
+        self.search.rotations = count.clamp(FEWEST_ROTATIONS.min(most), most);
         self
     }
 

@@ -9,6 +9,9 @@ use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{Rescorer, TermValues, Workspace};
 use rayon::prelude::*;
 
+/// Most poses that a thread rescores at once: those in contact take longer than others.
+const RESCORED_TOGETHER: usize = 16;
+
 /// A pose that may become a row.
 #[derive(Clone, Debug)]
 pub(crate) struct Candidate {
@@ -45,6 +48,7 @@ pub(crate) fn candidates(
         .par_iter()
         .zip(placed)
         .enumerate()
+        .with_max_len(RESCORED_TOGETHER)
         .map_init(Workspace::default, |workspace, (index, (peak, placed))| {
             let pose_terms = rescorer
                 .map(|rescorer| rescorer.score(&placed.pose, workspace))

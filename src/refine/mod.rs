@@ -1,25 +1,29 @@
-//! Refinement of poses at atomic resolution: the ligand moved as a rigid body, side chains of the interface packed.
+//! Refinement of poses at atomic resolution: the ligand moved as a rigid body, side chains of the interface packed, and its
+//! atoms moved apart.
 //!
-//! For each pose three stages follow one another. Each is kept only if it lowers the energy of the sharp fit
+//! For each pose four stages follow one another. Each is kept only if it lowers the energy of the sharp fit
 //! ([`knotdock_scoring::sharp`]), so that no pose ends above where it began. None takes the ligand farther from the pose
 //! than [`RefineOptions::max_move`]: unbound molecules clash in their place, and the lowest energy is then elsewhere.
 //!
 //! 1. The rigid optimum near the pose: that of [`SharpFit::best_near`] or, if it is too far, of [`SharpFit::descend`].
 //! 2. The side chains of the interface, packed for that place by their own energies ([`crate::side_chains`]).
 //! 3. The rigid optimum of the packed molecules. Packing is judged after it, for new side chains need a new place.
+//! 4. A restrained minimisation of the interface, which leaves few clashes or none (`minimise.rs`).
 //!
 //! Lengths are in Å, energies of the sharp fit in RT.
 
+mod minimise;
 #[cfg(test)]
 mod tests;
 
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::sharp::{Energy, Optimum, PairList, SharpFit};
-use knotdock_structures::Knots;
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::{Atom, Molecule};
+use knotdock_structures::{Knots, PolarAtom};
 use serde::Serialize;
 
+use self::minimise::minimised;
 use crate::side_chains::{HeldResidue, RepackOptions, Repacker};
 
 /// Options of a refinement.
@@ -29,7 +33,7 @@ pub struct RefineOptions {
     pub moves: bool,
     /// Farthest that it may move, as the root mean square distance of its atoms, in Å.
     pub max_move: f64,
-    /// Whether side chains are packed.
+    /// Whether atoms of the interface move: side chains are packed, then all are minimised.
     pub side_chains: bool,
     /// pH that charges are for.
     pub ph: f64,
@@ -38,6 +42,7 @@ pub struct RefineOptions {
 /// Two molecules whose poses are to be refined.
 pub struct Refiner<'a> {
     molecules: [&'a Molecule; 2],
+    polar: [Vec<PolarAtom>; 2],
     fit: SharpFit,
     repacker: Option<Repacker<'a>>,
     options: RefineOptions,
@@ -58,8 +63,8 @@ pub struct Refined {
     pub held: Vec<HeldResidue>,
     /// Outcome of packing; `None` if there was none.
     pub packing: Option<Packing>,
-    /// Receptor and ligand with the packed side chains, each in its own frame; `None` if all side chains stayed.
-    pub packed: Option<[Molecule; 2]>,
+    /// Receptor and ligand with their moved atoms, each in its own frame; `None` if all atoms stayed.
+    pub molecules: Option<[Molecule; 2]>,
 }
 
 /// Outcome of packing the side chains of a pose.
@@ -85,6 +90,7 @@ impl<'a> Refiner<'a> {
         let repacker = || Repacker::new(receptor, ligand, RepackOptions::default());
         Ok(Self {
             molecules,
+            polar: molecules.map(Molecule::polar_atoms),
             fit: sharp_fit(molecules, options.ph)?,
             repacker: options.side_chains.then(repacker),
             options,
@@ -101,7 +107,7 @@ impl<'a> Refiner<'a> {
             energy: self.fit.energy(pose),
         };
         let mut place = self.settled(&self.fit, start, pose, list);
-        let (mut packing, mut packed, mut held) = (None, None, Vec::new());
+        let (mut packing, mut molecules, mut held) = (None, None, Vec::new());
         if let Some(repacker) = &self.repacker {
             let found = repacker.repack(&place.pose);
             let mut moved = 0;
@@ -115,7 +121,7 @@ impl<'a> Refiner<'a> {
                 if after.energy.total() < place.energy.total() {
                     place = after;
                     moved = found.moved.len();
-                    packed = Some([found.receptor, found.ligand]);
+                    molecules = Some([found.receptor, found.ligand]);
                 }
             }
             packing = Some(Packing {
@@ -123,6 +129,18 @@ impl<'a> Refiner<'a> {
                 exact: found.exact,
             });
             held = found.held;
+            let before = molecules
+                .as_ref()
+                .map_or(self.molecules, |both| both.each_ref());
+            let polar = [&self.polar[0][..], &self.polar[1]];
+            if let Some(minimised) = minimised(before, polar, &place.pose) {
+                let fit = sharp_fit(minimised.each_ref(), self.options.ph)?;
+                let energy = fit.energy(&place.pose);
+                if energy.total() < place.energy.total() {
+                    place.energy = energy;
+                    molecules = Some(minimised);
+                }
+            }
         }
         Ok(Refined {
             pose: place.pose,
@@ -131,7 +149,7 @@ impl<'a> Refiner<'a> {
             after: place.energy,
             held,
             packing,
-            packed,
+            molecules,
         })
     }
 

@@ -10,7 +10,7 @@ use crate::inputs::native::NativeFiles;
 use crate::messages::console::Console;
 use crate::records::recorded_run::RecordedRun;
 use knotdock::dock::gaps::closer;
-use knotdock::dock::pair::{GivenDefaults, PreparedPair, Sampling};
+use knotdock::dock::pair::{GivenDefaults, Pair, PreparedPair, Sampling};
 use knotdock::evaluate::Evaluator;
 use knotdock::options::{DockOptions, MachineOptions};
 use knotdock::output::files::staging::put_back;
@@ -92,12 +92,19 @@ pub struct Request {
 impl Request {
     /// The docking of bodies with some options.
     pub fn of(bodies: Bodies, native: Option<NativeFiles>, given: GivenOptions) -> Self {
+        let options = match bodies.pair() {
+            Pair::Molecules([_, ligand]) => {
+                let options = given.options.clone();
+                options.of_ligand(ligand, |name| given.has(name))
+            }
+            Pair::Meshes(_) => given.options.clone(),
+        };
         Self {
             bodies,
             native,
             given: (&given).into(),
             is_angle: given.by_angle() || !given.has("rotations"),
-            options: given.options,
+            options,
         }
     }
 

@@ -115,38 +115,40 @@ struct Sample {
 impl Probes {
     /// Correlates the probe rotations at full rank.
     pub fn new(set: &[UnitQuaternion<f64>], full: &CpuEngine) -> Self {
-        let mut work = full.workspace();
-        let mut samples: Vec<Sample> = Vec::with_capacity(PROBES);
-        let mut best = full.precision().least_positive();
-        for probe in 0..PROBES {
+        let sample = |probe: usize| {
             let rotation = probe_rotation(set, probe);
+            let mut work = full.workspace();
             full.correlate(&rotation, &mut work);
-            let values: Vec<(usize, f64)> = best_voxels(&work.scores)
-                .into_iter()
-                .map(|voxel| (voxel, work.scores.score(voxel)))
-                .collect();
-            best = values.iter().fold(best, |best, value| best.max(value.1));
-            samples.push(Sample { rotation, values });
-        }
+            let values = best_voxels(&work.scores).into_iter();
+            let values = values.map(|voxel| (voxel, work.scores.score(voxel)));
+            Sample {
+                rotation,
+                values: values.collect(),
+            }
+        };
+        let samples: Vec<Sample> = (0..PROBES).into_par_iter().map(sample).collect();
+        let values = samples.iter().flat_map(|sample| &sample.values);
+        let least = full.precision().least_positive();
+        let best = values.fold(least, |best, value| best.max(value.1));
         Self { samples, best }
     }
 
     /// Largest error of an engine at the probes' best voxels, as a share of the best.
     pub fn error(&self, engine: &CpuEngine) -> f64 {
-        let mut work = engine.workspace();
         // In the precision of the scores.
         let share = |score: f64, exact: f64| match engine.precision() {
             Precision::Single => f64::from((score as f32 - exact as f32).abs() / self.best as f32),
             Precision::Double => (score - exact).abs() / self.best,
         };
-        let mut error = 0.0f64;
-        for Sample { rotation, values } in &self.samples {
+        let of_sample = |Sample { rotation, values }: &Sample| {
+            let mut work = engine.workspace();
             engine.correlate(rotation, &mut work);
-            for &(voxel, exact) in values {
-                error = error.max(share(work.scores.score(voxel), exact));
-            }
-        }
-        error
+            let errors = values.iter();
+            let errors = errors.map(|&(voxel, exact)| share(work.scores.score(voxel), exact));
+            errors.fold(0.0, f64::max)
+        };
+        let errors = self.samples.par_iter().map(of_sample);
+        errors.reduce(|| 0.0, f64::max)
     }
 }
 

@@ -22,7 +22,7 @@ pub(super) const BOND_RANGE: f64 = 0.9;
 const OPPOSITE: f64 = -0.05;
 /// Overlap from which two atoms clash, Å. MolProbity counts overlaps of 0.4 Å between all atoms as clashes (Chen et al.,
 /// Acta Cryst. D66 (2010) 12-21); united atoms with their tolerance leave 0.5 Å.
-pub(super) const CLASH: f64 = 0.5;
+pub const CLASH: f64 = 0.5;
 /// Cosine from which an angle has its whole weight: 60 degrees.
 const STRAIGHT: f64 = 0.5;
 
@@ -60,12 +60,13 @@ impl Energy {
         direction: &Vector3<f64>,
     ) {
         let distance = between.norm();
-        let beyond = distance - contact_distance(receptor, ligand);
+        let bonds = receptor.polar.may_bond(&ligand.polar);
+        let beyond = distance - contact_distance(receptor.radius + ligand.radius, bonds);
         self.contacts += well(beyond, RANGE).0;
         let lack = (-beyond).max(0.0);
         self.overlap += lack * lack;
         self.clashes += usize::from(lack > CLASH);
-        if receptor.polar.may_bond(&ligand.polar) && distance > 0.0 {
+        if bonds && distance > 0.0 {
             let along = between / distance;
             let of_receptor = Vector3::from(receptor.polar.direction);
             let (first, _) = angle_weight(&of_receptor, of_receptor.dot(&along));
@@ -85,15 +86,9 @@ pub(super) fn bond_count(receptor: &Site, ligand: &Site) -> f64 {
     }
 }
 
-/// Distance of contact of two atoms, Å.
-fn contact_distance(receptor: &Site, ligand: &Site) -> f64 {
-    let bonds = receptor.polar.may_bond(&ligand.polar);
-    distance_of(receptor.radius + ligand.radius, bonds)
-}
-
 /// Distance of contact by a sum of radii (Å), and by whether a hydrogen bond is possible.
 #[inline(always)]
-pub(super) fn distance_of(radii: f64, bonds: bool) -> f64 {
+pub fn contact_distance(radii: f64, bonds: bool) -> f64 {
     let least = if bonds { BOND_LENGTH } else { f64::INFINITY };
     radii.min(least) - TOLERANCE
 }

@@ -32,7 +32,7 @@ mod pair_list;
 mod tests;
 
 pub use descent::Optimum;
-pub use energy::Energy;
+pub use energy::{CLASH, Energy, contact_distance};
 pub use pair_list::PairList;
 
 use crate::blocks::{Blocks, NearPoints};

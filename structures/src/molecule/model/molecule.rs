@@ -2,7 +2,7 @@
 
 use serde::Serialize;
 
-use crate::molecule::chemistry::is_hydrogen;
+use crate::molecule::chemistry::{is_hydrogen, is_metal};
 use crate::molecule::model::ReadReport;
 
 /// File format of a structure.
@@ -61,6 +61,11 @@ impl Atom {
     /// [`Hydrogens::Keep`](crate::molecule::Hydrogens::Keep) have.
     pub fn is_hydrogen(&self) -> bool {
         is_hydrogen(&self.element)
+    }
+
+    /// Whether this is a metal, whose bonds are longer than others and coordinate.
+    pub fn is_metal(&self) -> bool {
+        is_metal(&self.element)
     }
 }
 
