@@ -23,6 +23,7 @@
 
 use std::collections::BTreeMap;
 use std::path::Path;
+use std::sync::OnceLock;
 use std::time::Instant;
 
 use knotdock_structures::Error;
@@ -33,13 +34,13 @@ use crate::dock::pair::PreparedPair;
 use crate::dock::plan::DockPlan;
 use crate::dock::run::dock_until;
 use crate::options::DockOptions;
-use crate::output::files::complexes::{Complex, complex};
+use crate::output::files::complexes::{Complex, PosedPair, complex};
 use crate::output::files::own_files::RUN;
 use crate::output::files::staging::Staging;
 use crate::output::records::input_record::InputRecord;
 use crate::output::records::manifest::{InputEntry, Inputs};
 use crate::output::run_contacts::{MAX_ROWS, RunContacts};
-use crate::output::run_folder::{Bodies, Clock, FinishedRun};
+use crate::output::run_folder::{Bodies, Clock, FinishedRun, TopComplexes};
 use crate::output::tables::restraints;
 use crate::output::tables::run_table::pose_rows;
 use crate::progress::{NoProgress, Progress};
@@ -114,6 +115,7 @@ impl<'a> Docking<'a> {
                 prepared,
                 outcome,
                 clock,
+                top: OnceLock::new(),
             })
         })?
     }
@@ -126,6 +128,8 @@ pub struct Run {
     prepared: PreparedPair,
     outcome: DockOutcome,
     clock: Clock,
+    /// The complexes that are written, once they were asked for.
+    top: OnceLock<TopComplexes>,
 }
 
 impl Run {
@@ -149,7 +153,7 @@ impl Run {
         &self.outcome
     }
 
-    /// The complex of a rank, from 1.
+    /// The complex of a rank, from 1: refined, or with the option `raw`, and of rings, as it was searched.
     ///
     /// # Errors
     /// [`Error`] for a rank that the run does not have.
@@ -160,8 +164,29 @@ impl Run {
             Error::input(format!("there is no rank {rank}"))
                 .help(format!("name a rank from 1 to {}", rows.len()))
         })?;
-        let arrangement = self.options.search.symmetry.into();
-        complex(self.molecules.each_ref(), arrangement, row)
+        let molecules = self.molecules.each_ref();
+        let kind = (molecules, self.options.search.symmetry.into());
+        let options = &self.options;
+        let options = options.changed(|options| options.output.write_top = 1);
+        let rows = std::slice::from_ref(row);
+        let top = TopComplexes::new(Bodies::Molecules(molecules), rows, &options)?;
+        match PosedPair::of(kind, (rows, top.refined())).first() {
+            Some(pair) => complex(pair),
+            None => unreachable!("a row gives a pair"),
+        }
+    }
+
+    /// The complexes that are written.
+    fn top(&self) -> Result<&TopComplexes, Error> {
+        if let Some(top) = self.top.get() {
+            return Ok(top);
+        }
+        let rows = pose_rows(&self.outcome.poses);
+        let bodies = Bodies::Molecules(self.molecules.each_ref());
+        let made = threads::on(self.options.machine.thread_count(), || {
+            TopComplexes::new(bodies, &rows, &self.options)
+        })??;
+        Ok(self.top.get_or_init(|| made))
     }
 
     /// The table of poses as CSV text: `poses.csv`.
@@ -169,7 +194,7 @@ impl Run {
     /// # Errors
     /// [`Error`] if a row cannot be written as text.
     pub fn table(&self) -> Result<String, Error> {
-        self.finished(|run| {
+        self.finished(self.top()?, |run| {
             let mut text = Vec::new();
             run.table().write_to(&mut text).map_err(Error::machine)?;
             String::from_utf8(text).map_err(Error::machine)
@@ -181,7 +206,9 @@ impl Run {
     /// # Errors
     /// [`Error`] if the file of a molecule cannot be read again for its checksum.
     pub fn record(&self) -> Result<String, Error> {
-        self.finished(|run| Ok(run.record(BTreeMap::new(), None)?.to_string()))
+        self.finished(&TopComplexes::default(), |run| {
+            Ok(run.record(BTreeMap::new(), None)?.to_string())
+        })
     }
 
     /// Writes the run into a directory that holds no other: what `knotdock dock` writes but for the report page.
@@ -190,13 +217,14 @@ impl Run {
     /// [`Error`] for a directory that holds something else or cannot be written.
     pub fn write(&self, directory: impl AsRef<Path>) -> Result<(), Error> {
         let staging = Staging::open(RUN, directory.as_ref(), false)?;
-        self.finished(|run| run.stage(staging.stage()))?;
+        self.finished(self.top()?, |run| run.stage(staging.stage()))?;
         staging.commit()
     }
 
     /// Hands the parts of the run to a function.
     fn finished<T>(
         &self,
+        top: &TopComplexes,
         read: impl FnOnce(FinishedRun<'_>) -> Result<T, Error>,
     ) -> Result<T, Error> {
         let (plan, outcome) = (&self.prepared.plan, &self.outcome);
@@ -209,7 +237,8 @@ impl Run {
             ligand: ligand?,
             native: None,
         };
-        let further: Vec<_> = restraints::met(plan, &outcome.poses).into_iter().collect();
+        let met = restraints::met(plan, &outcome.poses);
+        let further: Vec<_> = met.into_iter().chain(top.clashes()).collect();
         let molecules = self.molecules.each_ref();
         let arrangement = self.options.search.symmetry.into();
         let mut run = FinishedRun {
@@ -218,6 +247,7 @@ impl Run {
             options: &self.options,
             plan,
             outcome,
+            top,
             further: &further,
             contacts: None,
             matching: None,

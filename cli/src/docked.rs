@@ -18,18 +18,20 @@ use crate::tables::report::{BEST, best_clusters, counted, firsts};
 use crate::tradeoff::choice::MIN_ROTATIONS;
 use knotdock::dock::gaps::dock_at_gaps;
 use knotdock::dock::outcome::DockOutcome;
-use knotdock::dock::pair::PreparedPair;
+use knotdock::dock::pair::{Pair, PreparedPair};
 use knotdock::dock::run::dock_until;
+use knotdock::dock::stopwatch::timed;
 use knotdock::options::DockOptions;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::RUN;
 use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::{Stage, Staging};
-use knotdock::output::run_folder::FinishedRun;
-use knotdock::output::tables::fields::Column;
+use knotdock::output::run_folder::{FinishedRun, TopComplexes};
+use knotdock::output::tables::fields::{Column, number};
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
 use knotdock::output::tables::{quality, restraints};
 use knotdock_structures::Error;
+use rayon::prelude::*;
 
 impl Docking {
     /// Docks and writes the run; its JSON object. Leftovers of ended commands are reported on `notices`.
@@ -51,7 +53,7 @@ impl Docking {
         };
         // The record says where the search stopped, so that it can be repeated.
         self.request.options.stopped = outcome.stopped;
-        Ok(Docked::new(self, outcome))
+        Docked::new(self, outcome)
     }
 
     /// Docks solids at this gap and the closer one, and keeps the better one.
@@ -82,7 +84,9 @@ impl Docking {
 pub struct Docked {
     docking: Docking,
     outcome: DockOutcome,
-    /// Columns that restraints and a known complex add to the table.
+    /// The complexes of the first rows.
+    top: TopComplexes,
+    /// Columns that restraints, a known complex and the complexes add to the table.
     quality: Vec<Column>,
     /// The same as one of the columns that any run may have each.
     wide: Vec<Column>,
@@ -90,7 +94,7 @@ pub struct Docked {
 
 impl Docked {
     /// What a docking came to.
-    pub fn new(docking: Docking, outcome: DockOutcome) -> Self {
+    pub fn new(docking: Docking, mut outcome: DockOutcome) -> Result<Self, Error> {
         let mut quality: Vec<Column> = restraints::met(&docking.prepared.plan, &outcome.poses)
             .into_iter()
             .collect();
@@ -102,6 +106,13 @@ impl Docked {
             found.resize(rows.len(), None);
             quality.extend(quality::columns(&found));
         }
+        let (bodies, options) = (docking.request.bodies.placed(), &docking.request.options);
+        let rows = pose_rows(&outcome.poses);
+        let (top, timing) = timed("complexes", || TopComplexes::new(bodies, &rows, options));
+        let top = top?;
+        outcome.timing.push(timing);
+        quality.extend(top.clashes());
+        quality.extend(complex_irmsd(&docking, &top)?);
         let wide = WIDE_COLUMNS.map(|name| {
             let found = quality.iter().find(|column| column.name == name);
             found.cloned().unwrap_or_else(|| Column {
@@ -109,12 +120,13 @@ impl Docked {
                 fields: Vec::new(),
             })
         });
-        Self {
+        Ok(Self {
             docking,
             outcome,
+            top,
             quality,
             wide: wide.into(),
-        }
+        })
     }
 
     pub fn table(&self) -> RunTable<'_> {
@@ -146,7 +158,8 @@ impl Docked {
         let addition = Addition::open(folder, None)?;
         let place = (addition.stage().folder(), None);
         let placed = request.bodies.placed();
-        placed.write(top, request.arrangement(), place)?;
+        let complexes = (top, self.top.refined());
+        placed.write(complexes, request.arrangement(), place)?;
         addition.place(false)
     }
 
@@ -177,6 +190,7 @@ impl Docked {
             options: &request.options,
             plan: &prepared.plan,
             outcome,
+            top: &self.top,
             further: &self.quality,
             contacts: contacts.as_ref(),
             matching: known.as_ref().map(KnownComplex::entry).transpose()?,
@@ -191,6 +205,7 @@ impl Docked {
                 options: &request.options,
                 table: &shown,
                 bodies: request.bodies.placed(),
+                refined: self.top.refined(),
                 contacts: contacts.as_ref(),
                 directory: &docking.shown.display().to_string(),
             };
@@ -238,6 +253,27 @@ impl Docked {
             !output.no_report,
         ));
     }
+}
+
+/// The column `complex_irmsd`: interface RMSD in Å of each complex that is written, if the known one can be matched.
+fn complex_irmsd(docking: &Docking, top: &TopComplexes) -> Result<Option<Column>, Error> {
+    let evaluator = docking.known.as_ref().and_then(KnownComplex::evaluator);
+    let (Some(_), Some(native), Pair::Molecules(pair), [_, ..]) = (
+        evaluator,
+        &docking.request.native,
+        docking.request.bodies.pair(),
+        top.refined(),
+    ) else {
+        return Ok(None);
+    };
+    let irmsd = top.refined().par_iter().map(|refined| {
+        let quality = native.quality(pair, refined)?;
+        Ok(number(quality.irmsd))
+    });
+    Ok(Some(Column {
+        name: "complex_irmsd".to_owned(),
+        fields: irmsd.collect::<Result<_, Error>>()?,
+    }))
 }
 
 /// Warning that a deadline left time for too few rotations.

@@ -11,8 +11,8 @@ use crate::inputs::native::NativeFiles;
 use crate::messages::console::Console;
 use crate::tables::report::text_table;
 use crate::tables::{self, Column, object};
-use knotdock::evaluate::{ChainChoice, Evaluator, PoseQuality};
-use knotdock::output::files::complexes::write_complexes;
+use knotdock::evaluate::{Evaluator, PoseQuality};
+use knotdock::output::files::complexes::{PosedPair, write_complexes};
 use knotdock::output::tables::poses::PoseRow;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::progress::Progress;
@@ -40,17 +40,13 @@ impl MatchedNative {
         }
     }
 
-    fn qualities(&self, row: &PoseRow, refined: &Refined) -> Result<[PoseQuality; 2], Error> {
-        let after = match &refined.molecules {
-            None => self.evaluator.evaluate(&refined.pose),
-            // Contacts are of all heavy atoms, so molecules with moved atoms are matched anew.
-            Some(pair) => {
-                let evaluator = self
-                    .files
-                    .evaluator(pair.each_ref(), &ChainChoice::default())?;
-                evaluator.evaluate(&refined.pose)
-            }
-        };
+    fn qualities(
+        &self,
+        pair: [&Molecule; 2],
+        row: &PoseRow,
+        refined: &Refined,
+    ) -> Result<[PoseQuality; 2], Error> {
+        let after = self.files.quality(pair, refined)?;
         Ok([self.evaluator.evaluate(&row.pose), after])
     }
 }
@@ -64,7 +60,7 @@ pub struct Refining<'a> {
 }
 
 pub struct Written {
-    /// Rows of the table, without molecules.
+    /// Rows of the table.
     pub table: Vec<RefinedRow>,
     /// Chain names in complexes; the same in all.
     pub chains: Option<ChainMap>,
@@ -113,24 +109,21 @@ impl<'a> Refining<'a> {
         Ok(all)
     }
 
-    /// Refines and writes a pose; its row and the complex's chains. Moved molecules are dropped to save memory.
+    /// Refines and writes a pose; its row and the complex's chains.
     fn one(
         &self,
         row: &PoseRow,
         list: &mut PairList,
     ) -> Result<(RefinedRow, Option<ChainMap>), Error> {
-        let mut refined = self.refiner.refine(&row.pose, list)?;
-        let quality = self.known.map(|known| known.qualities(row, &refined));
+        let refined = self.refiner.refine(&row.pose, list)?;
+        let quality = self
+            .known
+            .map(|known| known.qualities(self.pair, row, &refined));
         let quality = quality.transpose()?;
-        let moved = refined.molecules.take();
-        let molecules = moved.as_ref().map_or(self.pair, |moved| moved.each_ref());
-        let placed = [PoseRow {
-            rank: row.rank,
-            pose: refined.pose,
-        }];
-        let pair = Arrangement::Pair;
+        let kind = (self.pair, Arrangement::Pair);
+        let complex = (std::slice::from_ref(row), std::slice::from_ref(&refined));
         let mut written =
-            write_complexes(molecules, pair, &placed, ", refined", (self.staged, None))?;
+            write_complexes(kind, &PosedPair::of(kind, complex), (self.staged, None))?;
         let row = RefinedRow {
             rank: row.rank,
             refined,
@@ -170,7 +163,6 @@ impl Written {
 /// A refined pose, with its qualities before and after where there is a known complex.
 pub struct RefinedRow {
     pub rank: usize,
-    /// What came of it; the molecules are not read.
     pub refined: Refined,
     pub quality: Option<[PoseQuality; 2]>,
     /// Name of the complex's file.

@@ -11,4 +11,4 @@ mod plan_text;
 pub mod run;
 pub mod scene;
 pub mod shared_process;
-mod stopwatch;
+pub mod stopwatch;

@@ -89,7 +89,7 @@ impl Stopwatch {
 }
 
 /// The result of a call with its time.
-pub(super) fn timed<T>(name: &'static str, call: impl FnOnce() -> T) -> (T, StageTime) {
+pub fn timed<T>(name: &'static str, call: impl FnOnce() -> T) -> (T, StageTime) {
     let started = Started::now();
     let result = call();
     (result, started.stage(name))

@@ -47,6 +47,12 @@ options! {
     OutputOptions as output, "Output", Both {
         /// Complexes to write to top/.
         write_top: usize = 10, "COUNT", NOT_NEGATIVE;
+        /// Write complexes as they were searched, with the clashes that a search forgives.
+        ///
+        /// By default their side chains are packed, and atoms that overlap are moved apart (`knotdock refine`). Ranks,
+        /// scores and poses.csv are of the poses that were searched either way.
+        #[serde(default)]
+        raw: bool = false, "", Flag;
         /// Add the diagnostic columns to poses.csv.
         diagnostics: bool = false, "", Flag;
         /// Write no report.html.

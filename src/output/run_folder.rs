@@ -13,7 +13,7 @@ use crate::dock::outcome::DockOutcome;
 use crate::dock::plan::DockPlan;
 use crate::options::DockOptions;
 use crate::output::files::assemblies::{Surface, write_assemblies};
-use crate::output::files::complexes::{WrittenBodies, write_complexes};
+use crate::output::files::complexes::{PosedPair, WrittenBodies, write_complexes};
 use crate::output::files::staging::Stage;
 use crate::output::files::viewers::{
     CHIMERAX, PYMOL, ViewedComplex, chimerax_script, pymol_script,
@@ -29,6 +29,7 @@ use crate::output::tables::poses::PoseRow;
 use crate::output::tables::restraints;
 use crate::output::tables::run_table::{RunTable, pose_rows};
 use crate::pose_space::arrangement::Arrangement;
+use crate::refine::{RefineOptions, Refined, Refiner};
 use crate::threads;
 
 /// The start of a run.
@@ -102,23 +103,73 @@ pub enum Bodies<'a> {
 }
 
 impl Bodies<'_> {
-    /// Writes the bodies in the poses of `rows` into a folder, for rings all copies; molecules in a format, if one is
-    /// given.
+    /// Writes the bodies in the poses of rows into a folder, for rings all copies; molecules as they were refined, if they
+    /// were, and in a format, if one is given.
     pub fn write(
         self,
-        rows: &[PoseRow],
+        (rows, refined): (&[PoseRow], &[Refined]),
         arrangement: Arrangement,
         (folder, format): (&Path, Option<Format>),
     ) -> Result<WrittenBodies, Error> {
         match self {
             Self::Molecules(molecules) => {
-                write_complexes(molecules, arrangement, rows, "", (folder, format))
+                let kind = (molecules, arrangement);
+                let pairs = PosedPair::of(kind, (rows, refined));
+                write_complexes(kind, &pairs, (folder, format))
             }
             Self::Solids([receptor, ligand]) => Ok(WrittenBodies {
                 names: write_assemblies(receptor, ligand, rows, folder)?,
                 chains: None,
             }),
         }
+    }
+}
+
+/// The complexes of a run's first rows, as they are written to `top/`: refined, or as they were searched.
+#[derive(Clone, Debug, Default)]
+pub struct TopComplexes {
+    /// The poses, refined or as they were searched; none of rings and meshes.
+    poses: Vec<Refined>,
+    is_raw: bool,
+}
+
+impl TopComplexes {
+    /// The complexes of a run's rows. Of rings and solids there are none, for these are written as they were searched.
+    pub fn new(bodies: Bodies, rows: &[PoseRow], options: &DockOptions) -> Result<Self, Error> {
+        let Bodies::Molecules(molecules) = bodies else {
+            return Ok(Self::default());
+        };
+        if Arrangement::from(options.search.symmetry).is_ring() {
+            return Ok(Self::default());
+        }
+        let (is_raw, ph) = (options.output.raw, options.terms.ph);
+        let refining = match is_raw {
+            true => RefineOptions::none(ph),
+            false => RefineOptions::usual(ph),
+        };
+        let top = rows.get(..options.output.write_top).unwrap_or(rows);
+        if top.is_empty() {
+            return Ok(Self::default());
+        }
+        let poses = Refiner::new(molecules, refining)?.all(top)?;
+        Ok(Self { poses, is_raw })
+    }
+
+    /// What the first rows are refined to; none if they are written as they were searched.
+    pub fn refined(&self) -> &[Refined] {
+        match self.is_raw {
+            true => &[],
+            false => &self.poses,
+        }
+    }
+
+    /// The column `complex_clashes`: pairs of heavy atoms that overlap by more than 0.5 Å in each complex that is written.
+    pub fn clashes(&self) -> Option<Column> {
+        let clashes = self.poses.iter().map(|pose| pose.after.clashes.to_string());
+        (!self.poses.is_empty()).then(|| Column {
+            name: "complex_clashes".to_owned(),
+            fields: clashes.collect(),
+        })
     }
 }
 
@@ -134,6 +185,8 @@ pub struct FinishedRun<'a> {
     pub plan: &'a DockPlan,
     /// The outcome.
     pub outcome: &'a DockOutcome,
+    /// The complexes that are written, refined.
+    pub top: &'a TopComplexes,
     /// Columns of the table after those of the search.
     pub further: &'a [Column],
     /// The contacts of the first rows, of molecules.
@@ -180,7 +233,8 @@ impl<'a> FinishedRun<'a> {
         let top = rows.get(..options.output.write_top).unwrap_or(&rows);
         let arrangement = options.search.symmetry.into();
         let folder = staging.folder().join("top");
-        let written = self.bodies.write(top, arrangement, (&folder, None))?;
+        let complexes = (top, self.top.refined());
+        let written = self.bodies.write(complexes, arrangement, (&folder, None))?;
         if let Some(chains) = &written.chains {
             let names = written.names.iter().zip(top);
             let viewed: Vec<ViewedComplex> = names

@@ -21,9 +21,11 @@ use knotdock_scoring::sharp::{Energy, Optimum, PairList, SharpFit};
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::{Atom, Molecule};
 use knotdock_structures::{Knots, PolarAtom};
+use rayon::prelude::*;
 use serde::Serialize;
 
 use self::minimise::minimised;
+use crate::output::tables::poses::PoseRow;
 use crate::side_chains::{HeldResidue, RepackOptions, Repacker};
 
 /// Options of a refinement.
@@ -37,6 +39,27 @@ pub struct RefineOptions {
     pub side_chains: bool,
     /// pH that charges are for.
     pub ph: f64,
+}
+
+impl RefineOptions {
+    /// Those of the complexes that a run writes.
+    pub fn usual(ph: f64) -> Self {
+        Self {
+            moves: true,
+            max_move: 3.0,
+            side_chains: true,
+            ph,
+        }
+    }
+
+    /// Those that leave poses as they are, and tell their energy.
+    pub fn none(ph: f64) -> Self {
+        Self {
+            moves: false,
+            side_chains: false,
+            ..Self::usual(ph)
+        }
+    }
 }
 
 /// Two molecules whose poses are to be refined.
@@ -63,8 +86,31 @@ pub struct Refined {
     pub held: Vec<HeldResidue>,
     /// Outcome of packing; `None` if there was none.
     pub packing: Option<Packing>,
-    /// Receptor and ligand with their moved atoms, each in its own frame; `None` if all atoms stayed.
-    pub molecules: Option<[Molecule; 2]>,
+    /// The atoms of receptor and ligand that moved within their molecule: place in the file, and position in its frame.
+    pub moved: [Vec<(usize, [f64; 3])>; 2],
+}
+
+impl Refined {
+    /// Whether an atom moved within its molecule.
+    pub fn has_moved_atoms(&self) -> bool {
+        self.moved.iter().any(|moved| !moved.is_empty())
+    }
+
+    /// Receptor or ligand (0 or 1) with its moved atoms, in its own frame.
+    pub fn molecule(&self, side: usize, original: &Molecule) -> Molecule {
+        let mut molecule = original.clone();
+        for &(place, position) in &self.moved[side] {
+            molecule.atoms[place].position = position;
+        }
+        molecule
+    }
+}
+
+/// The atoms of a molecule that are elsewhere in another form of it.
+fn moved_atoms(from: &Molecule, to: &Molecule) -> Vec<(usize, [f64; 3])> {
+    let pairs = from.atoms.iter().zip(&to.atoms).enumerate();
+    let moved = pairs.filter(|(_, (from, to))| from.position != to.position);
+    moved.map(|(place, (_, to))| (place, to.position)).collect()
 }
 
 /// Outcome of packing the side chains of a pose.
@@ -95,6 +141,13 @@ impl<'a> Refiner<'a> {
             repacker: options.side_chains.then(repacker),
             options,
         })
+    }
+
+    /// Refines the poses of some rows, in their order.
+    pub fn all(&self, rows: &[PoseRow]) -> Result<Vec<Refined>, KnotsError> {
+        let refine = |list: &mut PairList, row: &PoseRow| self.refine(&row.pose, list);
+        let rows = rows.par_iter().with_max_len(1);
+        rows.map_init(PairList::default, refine).collect()
     }
 
     /// Refines a pose. Single-threaded; poses may be refined side by side, each thread with its own list.
@@ -142,6 +195,8 @@ impl<'a> Refiner<'a> {
                 }
             }
         }
+        let moved =
+            molecules.map(|both| [0, 1].map(|side| moved_atoms(self.molecules[side], &both[side])));
         Ok(Refined {
             pose: place.pose,
             rmsd_moved: rmsd_between(self.molecules[1], pose, &place.pose),
@@ -149,7 +204,7 @@ impl<'a> Refiner<'a> {
             after: place.energy,
             held,
             packing,
-            molecules,
+            moved: moved.unwrap_or_default(),
         })
     }
 

@@ -16,9 +16,10 @@ use crate::records::is_ensemble;
 use crate::records::recorded_run::RecordedRun;
 use knotdock::dock::pair::Pair;
 use knotdock::output::files::added::Addition;
-use knotdock::output::files::complexes::file_names;
-use knotdock::output::files::model_file::{PosedPair, model_file_name, write_model_file};
+use knotdock::output::files::complexes::{PosedPair, file_names};
+use knotdock::output::files::model_file::{model_file_name, write_model_file};
 use knotdock::output::files::staging::put_back;
+use knotdock::output::run_folder::TopComplexes;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::threads;
@@ -44,6 +45,9 @@ pub struct Export {
     /// Directory to write to [default: DIR/top].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
+    /// Write complexes as they were searched, not refined.
+    #[arg(long)]
+    raw: bool,
     /// Replace complexes that are there and differ, even if someone has edited them.
     #[arg(long)]
     force: bool,
@@ -73,7 +77,7 @@ impl Export {
         console.warn_leftovers(&export.leftovers);
         if self.format == Some(ExportFormat::Ensemble) {
             let pairs = exports.iter().map(RunExport::pairs);
-            let mut pairs: Vec<PosedPair> = pairs.collect::<Result<Vec<_>, _>>()?.concat();
+            let mut pairs: Vec<PosedPair> = pairs.collect::<Result<Vec<_>, Error>>()?.concat();
             pairs.sort_by_key(|pair| self.place(pair.row.rank));
             let name = write_model_file(&pairs, export.stage().folder())?;
             export.place(self.force)?;
@@ -91,12 +95,14 @@ impl Export {
             rows,
             bodies,
             arrangement,
+            top,
         } in &exports
         {
-            let of_run =
-                bodies
-                    .placed()
-                    .write(rows, *arrangement, (export.stage().folder(), format))?;
+            let of_run = bodies.placed().write(
+                (rows, top.refined()),
+                *arrangement,
+                (export.stage().folder(), format),
+            )?;
             let names = rows.iter().zip(of_run.names);
             written.extend(names.map(|(row, name)| (row.rank, name, of_run.chains.clone())));
         }
@@ -171,10 +177,16 @@ impl Export {
                 let read = bodies.records().map(|record| record.path.as_path());
                 check_not_read(&folder.join(name), read)?;
             }
+            let wanted = run.options.changed(|options| {
+                options.output.write_top = rows.len();
+                options.output.raw |= self.raw;
+            });
+            let top = TopComplexes::new(bodies.placed(), &rows, &wanted)?;
             Ok(RunExport {
                 rows,
                 bodies,
                 arrangement,
+                top,
             })
         });
         exports.collect()
@@ -186,12 +198,8 @@ impl RunExport {
         let Pair::Molecules(molecules) = self.bodies.pair() else {
             return Err(Error::input("these are meshes, not molecules"));
         };
-        let posed = self.rows.iter().map(|row| PosedPair {
-            molecules,
-            arrangement: self.arrangement,
-            row: *row,
-        });
-        Ok(posed.collect())
+        let kind = (molecules, self.arrangement);
+        Ok(PosedPair::of(kind, (&self.rows, self.top.refined())))
     }
 }
 
@@ -200,4 +208,5 @@ struct RunExport {
     rows: Vec<PoseRow>,
     bodies: Bodies,
     arrangement: Arrangement,
+    top: TopComplexes,
 }

@@ -14,6 +14,7 @@ use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::is_run;
 use knotdock::output::files::seal::{REPORT, is_sealed};
 use knotdock::output::files::staging::put_back;
+use knotdock::output::run_folder::TopComplexes;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::threads;
 use knotdock_structures::Error;
@@ -99,11 +100,13 @@ fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Error> {
     let table = PoseTable::read(&directory.join("poses.csv"))?;
     let bodies = Bodies::recorded(run.inputs.pair(), &record_path, &run.options)?;
     let contacts = bodies.contacts(&table, &run.options);
+    let top = TopComplexes::new(bodies.placed(), table.rows(), &run.options)?;
     let report = RunReport {
         record: &record,
         options: &run.options,
         table: &table,
         bodies: bodies.placed(),
+        refined: top.refined(),
         contacts: contacts.as_ref(),
         directory: &name,
     };

@@ -13,6 +13,7 @@ use knotdock::evaluate::{
 };
 use knotdock::output::records::input_record::{InputRecord, NativeRecord};
 use knotdock::output::tables::poses::PoseRow;
+use knotdock::refine::Refined;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::{Molecule, ReadOptions};
 
@@ -121,6 +122,13 @@ impl NativeFiles {
             let with_notes = self.notes().fold(error, |error, note| error.and(note));
             with_notes.at(&self.first.record.path)
         })
+    }
+
+    /// The quality of a refined pose. Contacts are of all heavy atoms, so molecules whose atoms moved are matched anew.
+    pub fn quality(&self, pair: [&Molecule; 2], refined: &Refined) -> Result<PoseQuality, Error> {
+        let moved = [0, 1].map(|side| refined.molecule(side, pair[side]));
+        let evaluator = self.evaluator(moved.each_ref(), &ChainChoice::default())?;
+        Ok(evaluator.evaluate(&refined.pose))
     }
 
     /// Omissions and warnings of reading the files.

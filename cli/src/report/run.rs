@@ -5,6 +5,7 @@
 //! | `sides` | names of the two bodies |
 //! | `columns`, `rows` | the table: how each column is shown, and its fields |
 //! | `terms` | columns that add up to the pose score |
+//! | `refined` | the first rows as their complexes are written: placement, and atoms that moved per side: place in the file, x, y, z |
 //! | `placed` | the motion of each placed body, per row: qw, qx, qy, qz, tx, ty, tz |
 //! | `bodies` | receptor and ligand: text of a structure, or vertices and triangles |
 //! | `contacts` | one text per row, five numbers per pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
@@ -27,6 +28,7 @@ use knotdock::output::run_contacts::RunContacts;
 use knotdock::output::run_folder::Bodies;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
+use knotdock::refine::Refined;
 use knotdock_structures::molecule::{Format, Molecule, ResidueSelection, fits, write_renamed};
 
 /// A finished run, as it is shown.
@@ -35,6 +37,8 @@ pub struct RunReport<'a> {
     pub options: &'a DockOptions,
     pub table: &'a PoseTable,
     pub bodies: Bodies<'a>,
+    /// The first rows as they were refined, which are shown in their place.
+    pub refined: &'a [Refined],
     /// Contacts of molecules in the poses of the table.
     pub contacts: Option<&'a RunContacts<'a>>,
     /// Its directory as commands would name it.
@@ -70,6 +74,7 @@ pub(super) fn data(report: &RunReport, count: usize) -> Value {
         "columns": columns,
         "rows": rows,
         "placed": placed.collect::<Vec<_>>(),
+        "refined": report.refined.iter().map(refined).collect::<Vec<_>>(),
         "chains": report.record["chains"],
     });
     match (report.bodies, report.contacts) {
@@ -104,6 +109,18 @@ fn cell(report: &RunReport, row: usize, column: &ShownColumn) -> Value {
             _ => json!(text),
         },
     }
+}
+
+/// A refined pose, with the atoms that moved, flat.
+fn refined(refined: &Refined) -> Value {
+    let moved = refined.moved.each_ref().map(|moved| {
+        let atoms = moved.iter().flat_map(|&(place, position)| {
+            let position = position.map(|part| json!(rounded(part, 3)));
+            std::iter::once(json!(place)).chain(position)
+        });
+        atoms.collect::<Vec<_>>()
+    });
+    json!({ "placed": placement(&refined.pose), "moved": moved })
 }
 
 /// Contacts as text: as values of JSON they would take ten times the memory.

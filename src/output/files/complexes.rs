@@ -15,6 +15,7 @@ use crate::output::files::whole_file::{write_new, write_whole};
 use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
+use crate::refine::Refined;
 
 /// A complex of a run.
 #[derive(Clone, Debug)]
@@ -26,21 +27,16 @@ pub struct Complex {
     pub text: String,
 }
 
-/// The complex of a row; of a ring all copies.
+/// A complex as text; of a ring all copies.
 ///
 /// # Errors
 /// [`Error`] for a row whose pose is not one of such a ring.
-pub fn complex(
-    [receptor, ligand]: [&Molecule; 2],
-    arrangement: Arrangement,
-    row: &PoseRow,
-) -> Result<Complex, Error> {
-    let others = placed_copies(ligand, arrangement, row, Path::new(""))?;
-    let molecules = with(receptor, &others);
-    let format = complex_format(&molecules);
+pub fn complex(pair: &PosedPair) -> Result<Complex, Error> {
+    let placed = pair.placed(Path::new(""))?;
+    let placed: Vec<&Molecule> = placed.iter().collect();
+    let format = complex_format(&placed);
     let mut text = Vec::new();
-    let remarks = remarks(row, arrangement, "");
-    write_complex(&mut text, format, &molecules, &remarks).map_err(Error::machine)?;
+    write_complex(&mut text, format, &placed, &pair.remarks()).map_err(Error::machine)?;
     Ok(Complex {
         format,
         text: String::from_utf8(text).map_err(Error::machine)?,
@@ -66,46 +62,99 @@ pub fn file_names(rank: usize) -> [String; 3] {
     ["pdb", "cif", "obj"].map(|extension| file_name(rank, extension))
 }
 
-/// Writes the complexes of `rows` into a staging folder as `rank_0001.pdb` ... They are `.cif` when one of the inputs
-/// was mmCIF or a complex does not fit the PDB format, or of the format that is `wanted`. For a ring all copies are
-/// written. `note` follows the rank in the remarks.
+/// A pose with its molecules, as it was searched or refined.
+#[derive(Clone, Copy)]
+pub struct PosedPair<'a> {
+    /// Receptor and ligand.
+    pub molecules: [&'a Molecule; 2],
+    /// Their arrangement.
+    pub arrangement: Arrangement,
+    /// The pose as it was searched.
+    pub row: PoseRow,
+    /// The refined pose that is written in its place; of a pair, not of a ring.
+    pub refined: Option<&'a Refined>,
+}
+
+impl<'a> PosedPair<'a> {
+    /// The poses of rows, with what they were refined to, if they were.
+    pub fn of(
+        (molecules, arrangement): ([&'a Molecule; 2], Arrangement),
+        (rows, refined): (&[PoseRow], &'a [Refined]),
+    ) -> Vec<Self> {
+        let pair = |(index, row): (usize, &PoseRow)| Self {
+            molecules,
+            arrangement,
+            row: *row,
+            refined: refined.get(index),
+        };
+        rows.iter().enumerate().map(pair).collect()
+    }
+
+    /// The receptor, and what is placed about it.
+    ///
+    /// # Errors
+    /// [`Error`] if the pose is not one of such a ring.
+    pub(crate) fn placed(&self, folder: &Path) -> Result<Vec<Molecule>, Error> {
+        let [receptor, ligand] = [0, 1].map(|side| match self.refined {
+            Some(refined) => refined.molecule(side, self.molecules[side]),
+            None => self.molecules[side].clone(),
+        });
+        let mut placed = placed_copies(&ligand, self.arrangement, &self.written_row(), folder)?;
+        placed.insert(0, receptor);
+        Ok(placed)
+    }
+
+    /// The row with the pose that is written.
+    fn written_row(&self) -> PoseRow {
+        PoseRow {
+            pose: self.refined.map_or(self.row.pose, |refined| refined.pose),
+            ..self.row
+        }
+    }
+
+    fn remarks(&self) -> Vec<String> {
+        let refined = self.refined.map_or("", |_| ", refined");
+        let mut remarks = remarks(&self.written_row(), self.arrangement, refined);
+        if self.refined.is_some_and(Refined::has_moved_atoms) {
+            remarks.push("side chains packed and atoms at the interface moved apart".to_owned());
+        }
+        remarks
+    }
+}
+
+/// Writes complexes into a staging folder as `rank_0001.pdb` ... They are `.cif` when one of the inputs was mmCIF or a
+/// complex does not fit the PDB format, or of the format that is `wanted`. For a ring all copies are written. Without
+/// complexes the names of chains are those that they would have of `molecules`.
 ///
 /// # Errors
 /// [`Error`] when the folder cannot be made, a file is there or cannot be written, or a row's pose is not one of
 /// such a ring.
 pub fn write_complexes(
-    [receptor, ligand]: [&Molecule; 2],
-    arrangement: Arrangement,
-    rows: &[PoseRow],
-    note: &str,
+    (molecules, arrangement): ([&Molecule; 2], Arrangement),
+    pairs: &[PosedPair],
     (folder, wanted): (&Path, Option<Format>),
 ) -> Result<WrittenBodies, Error> {
-    if !rows.is_empty() {
+    if !pairs.is_empty() {
         disk::create_dir_all(folder).map_err(|source| file_error::unwritable(folder, source))?;
     }
-    let placed = |row: &PoseRow| placed_copies(ligand, arrangement, row, folder);
-    // Placed molecules are made twice, for their format and for the file: all at once may not fit into the memory.
-    let mut fits = true;
-    for row in rows {
-        fits &= complex_format(&with(receptor, &placed(row)?)) == Format::Pdb;
-    }
+    let [receptor, ligand] = molecules;
     // Without complexes the names of chains are those that they would have.
-    let unplaced = || vec![ligand.clone(); arrangement.placed()];
-    let format = match rows {
-        [] => complex_format(&with(receptor, &unplaced())),
-        _ if fits => Format::Pdb,
-        _ => Format::Mmcif,
+    let unplaced = vec![ligand; arrangement.placed()];
+    let unplaced: Vec<&Molecule> = std::iter::once(receptor).chain(unplaced).collect();
+    let format = match wanted {
+        Some(format) => format,
+        None if pairs.is_empty() => complex_format(&unplaced),
+        None => format_of(pairs, folder)?,
     };
-    let format = wanted.unwrap_or(format);
     let mut chains = None;
     let mut names = Vec::new();
-    for row in rows {
-        let name = file_name(row.rank, format.extension());
-        let others = placed(row)?;
-        let remarks = remarks(row, arrangement, note);
+    for pair in pairs {
+        let name = file_name(pair.row.rank, format.extension());
+        let placed = pair.placed(folder)?;
         let path = folder.join(&name);
         let written = write_new(&path, |mut file| {
-            let map = write_complex(&mut file, format, &with(receptor, &others), &remarks);
+            let placed: Vec<&Molecule> = placed.iter().collect();
+            let map = write_complex(&mut file, format, &placed, &pair.remarks());
             chains = Some(map?);
             Ok(())
         });
@@ -113,17 +162,29 @@ pub fn write_complexes(
         names.push(name);
     }
     if chains.is_none() {
-        let map = write_complex(&mut io::sink(), format, &with(receptor, &unplaced()), &[]);
+        let map = write_complex(&mut io::sink(), format, &unplaced, &[]);
         chains = Some(map.map_err(|error| file_error::writing(folder, error))?);
     }
     Ok(WrittenBodies { names, chains })
+}
+
+/// The format that holds all of some complexes. Placed molecules are made for it and again for the files: all at once may
+/// not fit into the memory.
+pub(crate) fn format_of(pairs: &[PosedPair], folder: &Path) -> Result<Format, Error> {
+    for pair in pairs {
+        let placed = pair.placed(folder)?;
+        if complex_format(&placed.iter().collect::<Vec<_>>()) != Format::Pdb {
+            return Ok(Format::Mmcif);
+        }
+    }
+    Ok(Format::Pdb)
 }
 
 /// The molecules that a pose places about the receptor: the ligand, or all copies of a ring but the receptor.
 ///
 /// # Errors
 /// [`Error`] if the pose is not one of such a ring.
-pub(crate) fn placed_copies(
+fn placed_copies(
     ligand: &Molecule,
     arrangement: Arrangement,
     row: &PoseRow,
@@ -136,11 +197,6 @@ pub(crate) fn placed_copies(
     })?;
     let moved = |pose: &Pose| ligand.map_positions(|position| pose.apply(position));
     Ok(poses.iter().map(moved).collect())
-}
-
-/// The molecules of a complex: the receptor, and those placed about it.
-pub(crate) fn with<'a>(receptor: &'a Molecule, others: &'a [Molecule]) -> Vec<&'a Molecule> {
-    std::iter::once(receptor).chain(others).collect()
 }
 
 /// Remarks of a complex: its origin, and how its ligand, or each copy of a ring from the one before it, was moved.

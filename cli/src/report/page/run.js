@@ -140,7 +140,7 @@ function matching(bodies, wanted) {
 /** Saves the complex of a row. */
 function download(data, row, column) {
   const rank = data.rows[row][column("rank")];
-  const text = complexAsPdb(data.bodies, data.placed[row], data.chains, `knotdock, rank ${rank}, from a report`);
+  const text = complexAsPdb(data.bodies, data.placed[row], data.refined[row], data.chains, `knotdock, rank ${rank}, from a report`);
   const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: "chemical/x-pdb" })), download: `rank_${String(rank).padStart(4, "0")}.pdb` });
   link.click();
   URL.revokeObjectURL(link.href);

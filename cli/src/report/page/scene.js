@@ -43,9 +43,13 @@ function makeScene(root, data) {
       bounds.setStyle({}, { hidden: true });
       return;
     }
-    models.slice(1).forEach(({ atoms, start }, copy) => {
+    const refined = data.refined[row];
+    models.forEach(({ atoms, body, start }, place) => {
+      const moved = movedAtoms(refined, body);
+      const placement = place === 0 ? null : refined?.placed ?? placements[place - 1];
       atoms.forEach((atom, index) => {
-        [atom.x, atom.y, atom.z] = placements[copy] ? apply(placements[copy], start[index]) : start[index];
+        const at = moved.get(index) ?? start[index];
+        [atom.x, atom.y, atom.z] = placement ? apply(placement, at) : at;
       });
     });
   }
