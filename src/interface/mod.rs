@@ -26,11 +26,13 @@ pub use contacts::{
 pub use score::{PlacedScore, score_in_place};
 
 use knotdock_scoring::se3::Pose;
+use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::{Atom, Molecule};
 use serde::Serialize;
 use std::collections::BTreeSet;
 
 use crate::pose_geometry::SURFACE_POINTS;
+use crate::refine::clashes;
 
 /// Largest distance of a contact, in Å.
 pub const CONTACT: f64 = 5.0;
@@ -75,6 +77,8 @@ pub struct Interface {
     pub hydrogen_bonds: usize,
     /// Salt bridges.
     pub salt_bridges: usize,
+    /// Pairs of heavy atoms that overlap by more than 0.5 Å, as [`crate::refine`] counts them.
+    pub clashes: usize,
     /// Surface of each side that the other buries, in Å^2.
     pub buried: [f64; 2],
     /// Shape complementarity Sc, 1 for surfaces that match; `None` if nothing is buried but a rim.
@@ -83,7 +87,10 @@ pub struct Interface {
 
 impl Interface {
     /// The interface of two molecules in place; charges are those at a pH.
-    pub fn of([first, second]: [&Molecule; 2], ph: f64) -> Self {
+    ///
+    /// # Errors
+    /// [`KnotsError`] for a molecule without atoms.
+    pub fn of([first, second]: [&Molecule; 2], ph: f64) -> Result<Self, KnotsError> {
         let finder = ContactFinder::new([first, second], ph);
         let contacts = finder.contacts(&[Pose::identity()]);
         let touching = |side: usize| {
@@ -97,17 +104,18 @@ impl Interface {
             hydrogen_bond_distance: contact.hydrogen_bond_distance,
             salt_bridge: contact.salt_bridge,
         };
-        Self {
+        Ok(Self {
             residues: [touching(0), touching(1)],
             hydrogen_bonds: contacts.iter().map(|contact| contact.hydrogen_bonds).sum(),
             salt_bridges: contacts
                 .iter()
                 .filter(|contact| contact.salt_bridge)
                 .count(),
+            clashes: clashes([first, second], ph)?,
             buried: first.buried_areas(second, SURFACE_POINTS),
             shape_complementarity: shape_complementarity([first, second]),
             pairs: contacts.iter().map(pair).collect(),
-        }
+        })
     }
 }
 

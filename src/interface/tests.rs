@@ -37,26 +37,26 @@ fn a_lysine_and_an_aspartate_hold_together() {
         ("OD1", "ASP", 'B', 7, "O", [0.0, 0.0, 0.0]),
         ("OD2", "ASP", 'B', 7, "O", [1.25, 0.0, 1.25]),
     ]);
-    let found = Interface::of([&lysine(-2.9), &aspartate], 7.0);
+    let found = Interface::of([&lysine(-2.9), &aspartate], 7.0).unwrap();
     assert_eq!((found.pairs.len(), found.residues), (1, [1, 1]));
     assert_eq!((found.hydrogen_bonds, found.salt_bridges), (1, 1));
     assert!((found.pairs[0].distance - 2.9).abs() < 1e-9);
     assert!((found.pairs[0].hydrogen_bond_distance.unwrap() - 2.9).abs() < 1e-9);
     assert_eq!(found.pairs[0].residues[0].number, "10");
     assert_eq!(found.pairs[0].residues[1].name, "ASP");
-    let apart = Interface::of([&lysine(-4.5), &aspartate], 7.0);
+    let apart = Interface::of([&lysine(-4.5), &aspartate], 7.0).unwrap();
     assert_eq!(
         (apart.pairs.len(), apart.hydrogen_bonds, apart.salt_bridges),
         (1, 0, 0)
     );
-    let far = Interface::of([&lysine(-5.1), &aspartate], 7.0);
+    let far = Interface::of([&lysine(-5.1), &aspartate], 7.0).unwrap();
     assert!(far.pairs.is_empty() && far.residues == [0, 0]);
     // From behind: nearer to the carbon than to the oxygen.
     let beyond = molecule(&[
         ("CE", "LYS", 'A', 10, "C", [5.3, 0.0, 0.0]),
         ("NZ", "LYS", 'A', 10, "N", [3.8, 0.0, 0.0]),
     ]);
-    let behind = Interface::of([&aspartate, &beyond], 7.0);
+    let behind = Interface::of([&aspartate, &beyond], 7.0).unwrap();
     assert_eq!((behind.hydrogen_bonds, behind.salt_bridges), (0, 1));
 }
 
@@ -72,7 +72,7 @@ fn clashes_are_no_bonds() {
             ("CE", "LYS", 'A', 10, "C", [x - 1.5, 0.0, 0.0]),
             ("NZ", "LYS", 'A', 10, "N", [x, 0.0, 0.0]),
         ]);
-        let found = Interface::of([&lysine, &aspartate], 7.0);
+        let found = Interface::of([&lysine, &aspartate], 7.0).unwrap();
         assert_eq!(
             (found.hydrogen_bonds, found.salt_bridges),
             (bonds, 1),
@@ -96,7 +96,7 @@ fn salt_bridges_are_of_charged_atoms() {
             ("P", residue, 'B', 7, "P", [9.0, 0.0, 0.0]),
             (name, residue, 'B', 7, "O", [0.0, 0.0, 0.0]),
         ];
-        Interface::of([&arginine, &molecule(&atoms)], 7.0).salt_bridges == 1
+        Interface::of([&arginine, &molecule(&atoms)], 7.0).unwrap().salt_bridges == 1
     };
     for (residue, charged, others) in [
         (
@@ -124,7 +124,7 @@ fn salt_bridges_are_of_charged_atoms() {
             atom("C", "C", [22.8, 0.0, 0.0]),
             atom(name, "O", [0.0, 0.0, 0.0]),
         ];
-        Interface::of([&arginine, &molecule(&atoms)], 7.0).salt_bridges == 1
+        Interface::of([&arginine, &molecule(&atoms)], 7.0).unwrap().salt_bridges == 1
     };
     for (residue, name, expected) in [
         ("SEP", "O1P", true),
@@ -151,7 +151,7 @@ fn termini_leave_side_chains_their_charge() {
         ("NZ", "LYS", 'A', 10, "N", [-2.9, 0.0, 0.0]),
     ]);
     let glutamate = molecule(&[("OE1", "GLU", 'B', 7, "O", [0.0, 0.0, 0.0])]);
-    let found = Interface::of([&lysine, &glutamate], 7.0);
+    let found = Interface::of([&lysine, &glutamate], 7.0).unwrap();
     assert_eq!(found.salt_bridges, 1);
 }
 
@@ -159,10 +159,10 @@ fn termini_leave_side_chains_their_charge() {
 #[test]
 fn buried_surface_is_shared_alike() {
     let carbon = |chain, x| molecule(&[("CA", "GLY", chain, 1, "C", [x, 0.0, 0.0])]);
-    let found = Interface::of([&carbon('A', 0.0), &carbon('B', 4.0)], 7.0);
+    let found = Interface::of([&carbon('A', 0.0), &carbon('B', 4.0)], 7.0).unwrap();
     assert!(found.buried[0] > 1.0);
     assert!((found.buried[0] - found.buried[1]).abs() < 0.06 * found.buried[0]);
-    let apart = Interface::of([&carbon('A', 0.0), &carbon('B', 9.0)], 7.0);
+    let apart = Interface::of([&carbon('A', 0.0), &carbon('B', 9.0)], 7.0).unwrap();
     assert_eq!(apart.buried, [0.0, 0.0]);
 }
 

@@ -4,6 +4,7 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::{ChainMap, Format, Molecule};
 use serde_json::Value;
@@ -151,7 +152,8 @@ impl TopComplexes {
         if top.is_empty() {
             return Ok(Self::default());
         }
-        let poses = Refiner::new(molecules, refining)?.all(top)?;
+        let top: Vec<Pose> = top.iter().map(|row| row.pose).collect();
+        let poses = Refiner::new(molecules, refining)?.all(&top)?;
         Ok(Self { poses, is_raw })
     }
 

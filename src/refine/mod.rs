@@ -25,7 +25,6 @@ use rayon::prelude::*;
 use serde::Serialize;
 
 use self::minimise::minimised;
-use crate::output::tables::poses::PoseRow;
 use crate::side_chains::{HeldResidue, RepackOptions, Repacker};
 
 /// Options of a refinement.
@@ -143,11 +142,11 @@ impl<'a> Refiner<'a> {
         })
     }
 
-    /// Refines the poses of some rows, in their order.
-    pub fn all(&self, rows: &[PoseRow]) -> Result<Vec<Refined>, KnotsError> {
-        let refine = |list: &mut PairList, row: &PoseRow| self.refine(&row.pose, list);
-        let rows = rows.par_iter().with_max_len(1);
-        rows.map_init(PairList::default, refine).collect()
+    /// Refines poses side by side.
+    pub fn all(&self, poses: &[Pose]) -> Result<Vec<Refined>, KnotsError> {
+        let refine = |list: &mut PairList, pose: &Pose| self.refine(pose, list);
+        let poses = poses.par_iter().with_max_len(1);
+        poses.map_init(PairList::default, refine).collect()
     }
 
     /// Refines a pose. Single-threaded; poses may be refined side by side, each thread with its own list.
@@ -222,6 +221,11 @@ impl<'a> Refiner<'a> {
         let best = best.or_else(|| fit.descend(&from.pose, list).filter(is_better));
         best.map_or(from, |Optimum { pose, energy }| Place { pose, energy })
     }
+}
+
+/// Pairs of heavy atoms of two molecules in place that overlap by more than 0.5 Å.
+pub fn clashes(molecules: [&Molecule; 2], ph: f64) -> Result<usize, KnotsError> {
+    Ok(sharp_fit(molecules, ph)?.energy(&Pose::identity()).clashes)
 }
 
 /// The sharp fit of two molecules with charges at a pH.

@@ -81,7 +81,7 @@ impl InterfaceCommand {
 /// The interface of a model of a file.
 fn row(file: &str, sides: ComplexSides, options: &DockOptions) -> Result<InterfaceRow, Error> {
     let molecules: [&Molecule; 2] = sides.molecules.each_ref();
-    let interface = Interface::of(molecules, options.terms.ph);
+    let interface = Interface::of(molecules, options.terms.ph)?;
     if interface.pairs.is_empty() {
         return Err(Error::input(format!(
             "the sides do not touch: no heavy atoms of chains {} and {} are within 5 Å of each other",
@@ -120,7 +120,7 @@ fn text(row: &InterfaceRow) -> String {
     });
     format!(
         "{}, chains {first} with {second}\n\
-         {} of {} and {} residues; {} and {}; {:.0} Å² buried ({:.0} and {:.0}){}\n\
+         {} of {} and {} residues; {}, {} and {}; {:.0} Å² buried ({:.0} and {:.0}){}\n\
          Score {:.1}: {}\n\n{}",
         row.file,
         counted(interface.pairs.len(), "contact"),
@@ -128,6 +128,10 @@ fn text(row: &InterfaceRow) -> String {
         interface.residues[1],
         counted(interface.hydrogen_bonds, "hydrogen bond"),
         counted(interface.salt_bridges, "salt bridge"),
+        match interface.clashes {
+            1 => "1 clash".to_owned(),
+            clashes => format!("{clashes} clashes"),
+        },
         interface.buried[0] + interface.buried[1],
         interface.buried[0],
         interface.buried[1],
@@ -171,6 +175,7 @@ fn listing(rows: &[InterfaceRow]) -> String {
             interface.pairs.len().to_string(),
             interface.hydrogen_bonds.to_string(),
             interface.salt_bridges.to_string(),
+            interface.clashes.to_string(),
             format!("{:.0}", interface.buried[0] + interface.buried[1]),
             interface
                 .shape_complementarity
@@ -179,7 +184,7 @@ fn listing(rows: &[InterfaceRow]) -> String {
         ]
     });
     text_table(
-        "file|model|chains|contacts|hydrogen bonds|salt bridges|buried, Å²|Sc|score",
+        "file|model|chains|contacts|hydrogen bonds|salt bridges|clashes|buried, Å²|Sc|score",
         lines,
     )
 }
@@ -211,6 +216,7 @@ impl InterfaceRow {
         add("residues_2", json!(interface.residues[1]));
         add("hydrogen_bonds", json!(interface.hydrogen_bonds));
         add("salt_bridges", json!(interface.salt_bridges));
+        add("clashes", json!(interface.clashes));
         add(
             "buried_area",
             json!(interface.buried[0] + interface.buried[1]),

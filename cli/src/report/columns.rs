@@ -8,10 +8,8 @@ use knotdock_scoring::terms::pose::POSE_TERMS;
 
 #[derive(Clone, Debug, Serialize)]
 pub(super) struct ShownColumn {
-    /// Its name in the file.
+    /// Its name, as in the file.
     pub name: String,
-    /// Its name for people.
-    pub label: String,
     /// Its description, with the unit.
     pub help: &'static str,
     /// Decimals that are shown; `None` of text.
@@ -20,37 +18,38 @@ pub(super) struct ShownColumn {
     pub main: bool,
 }
 
-/// Columns, one per line: name, label, help, decimals (`-` for text), and whether it is shown at first.
+/// Columns, one per line: name, help, decimals (`-` for text), and whether it is shown at first.
 const DESCRIBED: &str = "\
-rank|rank|Rank: 1 is the best|0|main
-score|score|What orders the rows: of a cluster, its poses together|1|main
-cluster|cluster|Number of the cluster|0|
-cluster_size|poses|Poses in the cluster|0|main
-pose_score|pose score|Score of the pose itself|1|
-search_score|search score|Exact correlation at the pose|1|
-z_score|z-score|Standard deviations above the mean of the run|1|main
-irmsd|i-RMSD|Interface RMSD from the known complex, Å|2|main
-lrmsd|L-RMSD|Ligand RMSD from the known complex, Å|2|main
-fnat|fnat|Share of the known contacts|2|
-dockq|DockQ|DockQ: 1 is the known complex|2|main
-capri|CAPRI class|Class by the rules of CAPRI|-|main
-restraints_met|restraints met|Restraints that the pose satisfies|-|main
-sharp_energy|sharp energy|Energy of the optimum at atomic resolution, RT|1|
-sharp_clashes|sharp clashes|Pairs of atoms of the optimum at atomic resolution that overlap by more than 0.5 Å|0|
-member|member|Member of the ensemble|-|main
-member_rank|rank there|Rank in the member's run|0|
-receptor_model|receptor model|Conformation of the receptor|-|main
-ligand_model|ligand model|Conformation of the ligand|-|main
-other_copies|other copies|Contacts with further copies of a ring|1|";
+rank|Rank: 1 is the best|0|main
+score|What orders the rows: of a cluster, its poses together|1|main
+cluster|Number of the cluster|0|
+cluster_size|Poses in the cluster|0|main
+pose_score|Score of the pose itself|1|
+search_score|Exact correlation at the pose|1|
+z_score|Standard deviations above the mean of the run|1|main
+irmsd|Interface RMSD from the known complex, Å|2|main
+lrmsd|Ligand RMSD from the known complex, Å|2|main
+fnat|Share of the known contacts|2|
+dockq|DockQ: 1 is the known complex|2|main
+capri|Class by the rules of CAPRI|-|main
+complex_clashes|Pairs of atoms of the complex in top/ that overlap by more than 0.5 Å|0|main
+complex_irmsd|Interface RMSD of the complex in top/ from the known one, Å|2|
+restraints_met|Restraints that the pose satisfies|-|main
+sharp_energy|Energy of the optimum at atomic resolution, RT|1|
+sharp_clashes|Pairs of atoms of the optimum at atomic resolution that overlap by more than 0.5 Å|0|
+member|Member of the ensemble|-|main
+member_rank|Rank in the member's run|0|
+receptor_model|Conformation of the receptor|-|main
+ligand_model|Conformation of the ligand|-|main
+other_copies|Contacts with further copies of a ring|1|";
 
 fn described(name: &str) -> Option<ShownColumn> {
     DESCRIBED.lines().find_map(|line| {
         let mut parts = line.split('|');
         let is_it = parts.next() == Some(name);
-        let [label, help, digits, main] = std::array::from_fn(|_| parts.next().unwrap_or_default());
+        let [help, digits, main] = std::array::from_fn(|_| parts.next().unwrap_or_default());
         is_it.then(|| ShownColumn {
             name: name.to_owned(),
-            label: label.to_owned(),
             help,
             digits: digits.parse().ok(),
             main: main == "main",
@@ -61,7 +60,6 @@ fn described(name: &str) -> Option<ShownColumn> {
 pub(super) fn shown(name: &str) -> ShownColumn {
     described(name).unwrap_or_else(|| ShownColumn {
         name: name.to_owned(),
-        label: name.replace('_', " "),
         help: if is_term(name) {
             "Part of the score"
         } else {

@@ -14,7 +14,7 @@ pub const BEST: usize = 10;
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
     let names = appended.iter().map(|column| format!("|{}", column.name));
-    let header = "rank|score|size|pose score|z-score".to_owned() + &names.collect::<String>();
+    let header = "rank|score|cluster_size|pose_score|z_score".to_owned() + &names.collect::<String>();
     let tenths = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.1}"));
     let lines = firsts(ranking).into_iter().take(BEST).map(|index| {
         let row = &ranking[index];
@@ -51,14 +51,6 @@ const OF_ENSEMBLES: &str = "rank score cluster_size receptor_model ligand_model 
 pub fn best_rows(table: &PoseTable, rows: Vec<usize>) -> String {
     let has = |name: &&str| table.header.iter().any(|column| column == *name);
     let columns: Vec<&str> = OF_ENSEMBLES.split_whitespace().filter(has).collect();
-    let heading = |name: &&str| match *name {
-        "cluster_size" => "size".to_owned(),
-        "receptor_model" => "rec".to_owned(),
-        "ligand_model" => "lig".to_owned(),
-        "z_score" => "z-score".to_owned(),
-        name => name.replace('_', " "),
-    };
-    let header: Vec<String> = columns.iter().map(heading).collect();
     let rows = table.objects(rows.into_iter().take(BEST));
     let lines = rows.iter().map(|row| {
         let field = |name: &&str| match (row[*name].as_f64(), *name) {
@@ -68,7 +60,7 @@ pub fn best_rows(table: &PoseTable, rows: Vec<usize>) -> String {
         };
         columns.iter().map(field).collect()
     });
-    text_table(&header.join("|"), lines)
+    text_table(&columns.join("|"), lines)
 }
 
 /// Places of the poses that stand for their clusters: the first of each, and each pose that belongs to none.

@@ -94,7 +94,8 @@ pub(crate) fn pymol_script(complexes: &[ViewedComplex]) -> String {
         // What is no polymer, such as a cofactor, has no cartoon.
         text += &format!(
             "group poses, rank_*\ngroup interfaces, interface_*\nshow sticks, interface_{rank:04} and {name} and not \
-             hydrogens\nshow sticks, {name} and organic\nutil.cnc {name}\nenable {name}\ndeselect\norient {name}\n",
+             hydrogens\nshow sticks, {name} and organic\nutil.cnc {name}\nenable {name}\ndeselect\n\
+             # The interface from its side.\norient interface_{rank:04}\nturn x, 90\nzoom interface_{rank:04}, 8\n",
             rank = first.rank,
         );
     }
@@ -134,9 +135,11 @@ pub(crate) fn chimerax_script(complexes: &[ViewedComplex]) -> String {
             colour = colour(place),
         );
     }
+    let [receptor, ligand] = complexes[0].chains.each_ref();
+    let [receptor, ligand] = [receptor, ligand].map(|chains| atoms_in_chimerax(1, chains));
     text += &format!(
         "hide atoms\nshow cartoons\nshow interface{rank} atoms\nstyle stick\ncolor byhetero\nhide #2-{last} models\n\
-         view #1\n",
+         # The interface from its side.\nview zalign {receptor} inFrontOf {ligand}\nturn y 90\nview interface{rank} pad 0.2\n",
         rank = complexes[0].rank,
         // A range that begins after the last model names none.
         last = complexes.len().max(2),

@@ -35,7 +35,7 @@ function drawDistribution(data, column, row) {
 
 /** The axes that a funnel may have: distances from the known complex, and from the selected pose. */
 function funnelAxes(data, column) {
-  const known = [["irmsd", "i-RMSD from the known complex, Å"], ["lrmsd", "L-RMSD from the known complex, Å"], ["dockq", "DockQ"]];
+  const known = [["irmsd", "irmsd: interface RMSD from the known complex, Å"], ["lrmsd", "lrmsd: ligand RMSD from the known complex, Å"], ["dockq", "dockq"]];
   const own = data.placed[0]?.length > 0 ? [["selected", "RMSD from the selected pose, Å"]] : [];
   return [...known.filter(([name]) => column(name) >= 0), ...own];
 }
@@ -49,8 +49,8 @@ function drawFunnel(data, column, row, axis, name, points, choose) {
 }
 
 const INTERFACE_COLUMNS = [
-  { label: "residue", digits: null }, { label: "touches", digits: null }, { label: "distance, Å", digits: 2 },
-  { label: "hydrogen bonds", digits: 0 }, { label: "salt bridge", digits: null },
+  { name: "residue", digits: null }, { name: "touches", digits: null }, { name: "distance, Å", digits: 2 },
+  { name: "hydrogen bonds", digits: 0 }, { name: "salt bridge", digits: null },
 ].map((column) => ({ ...column, help: "", main: true }));
 
 function interfaceRows(data, row) {
@@ -72,7 +72,7 @@ function drawConsensus(data, sides) {
     touched.sort((one, other) => other[1] - one[1] || one[0] - other[0]);
     makeTable(byId(`consensus-${place}`), {
       caption: `Residues of the ${side}`,
-      columns: [["residue", null], ["clusters", 0], ["share", 2]].map(([label, digits]) => ({ label, digits, help: "", main: true })),
+      columns: [["residue", null], ["clusters", 0], ["share", 2]].map(([name, digits]) => ({ name, digits, help: "", main: true })),
       rows: touched.map(([residue, clusters]) => [residueName(data.bodies[place], residue), clusters, clusters / Math.max(data.counted, 1)]),
       empty: "No residue is touched",
     });

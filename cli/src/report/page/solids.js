@@ -9,7 +9,7 @@ async function showSolids(data) {
     table.mark(row);
     scene?.show(row);
     const said = data.columns.map((column, place) => [column, data.rows[row][place]]).filter(([column, value]) => column.main && value !== null);
-    byId("selected").textContent = `Selected: ${said.map(([column, value]) => `${column.label} ${shownNumber(value, column.digits)}`).join(", ")}.`;
+    byId("selected").textContent = `Selected: ${said.map(([column, value]) => `${column.name} ${shownNumber(value, column.digits)}`).join(", ")}.`;
     byId("scene").setAttribute("aria-label", `${data.sides[0]} and ${data.sides[1]}, row ${data.rows[row][first]}, turned with the mouse or the arrow keys`);
   }
 

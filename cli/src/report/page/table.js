@@ -2,7 +2,7 @@ const PAGE_ROWS = 25;
 
 /**
  * A table that sorts, filters and turns pages, and in which a row can be chosen by mouse and keyboard.
- * `columns`: name, label, help, digits (null of text), main. `rows`: arrays of fields in that order.
+ * `columns`: name, help, digits (null of text), main. `rows`: arrays of fields in that order.
  * `choose(row)` is called with the place of a chosen row; without it rows cannot be chosen.
  * `link(row)` is the address behind the first cell, where there is one.
  */
@@ -52,10 +52,10 @@ function makeTable(root, { caption, columns, rows, choose, link, empty }) {
   function draw() {
     const shown = columns.map((_, place) => place).filter((place) => state.all || columns[place].main);
     head.replaceChildren(...shown.map((place) => {
-      const { label, help, digits } = columns[place];
+      const { name, help, digits } = columns[place];
       const sorted = state.sort !== place ? "none" : state.descending ? "descending" : "ascending";
       const arrow = { none: "", ascending: " ▲", descending: " ▼" }[sorted];
-      const button = make("button", { type: "button", "data-column": place, title: help || null, click: () => sortBy(place) }, label + arrow);
+      const button = make("button", { type: "button", "data-column": place, title: help || null, click: () => sortBy(place) }, name + arrow);
       return make("th", { scope: "col", class: digits === null ? null : "number", "aria-sort": sorted }, button);
     }));
     const places = order();
