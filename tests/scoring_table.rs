@@ -288,9 +288,9 @@ fn first_poses_of_small_searches() {
         for (index, row) in outcome.poses.iter().take(SEARCHED).enumerate() {
             let values = vec![
                 Some(row.rotation as f64),
-                Some(row.search_score),
+                row.search_score,
                 Some(row.score_grid),
-                Some(row.pose_score),
+                row.pose_score,
             ];
             found.insert((case.to_owned(), index as u32 + 1), values);
         }

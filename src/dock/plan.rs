@@ -159,6 +159,13 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Error
 }
 
 impl DockPlan {
+    /// Rows that get exact scores; all if `None`. Poses of rings score with copies beyond the neighbours, of which the
+    /// search knows nothing, so their order needs exact scores.
+    pub(crate) fn exact_rows(&self) -> Option<usize> {
+        let is_all = self.options.ranking.no_cluster || self.options.search.symmetry.is_some();
+        self.options.ranking.exact.filter(|_| !is_all)
+    }
+
     /// The knots that are docked, of receptor and ligand.
     pub fn knots(&self) -> [&Knots; 2] {
         [&self.receptor, &self.ligand]

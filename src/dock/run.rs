@@ -11,7 +11,7 @@ use crate::pose_space::rotations::RotationGroup;
 use crate::progress::{NoProgress, Progress};
 use crate::rank::candidates::{Candidate, candidates, clusters_of, deduplicated, merge};
 use crate::rank::cluster::RigidBody;
-use crate::rank::ranking::{PoseScorer, Ranking, report};
+use crate::rank::ranking::{PoseScorer, Ranking, RowChoice, report};
 use crate::rank::sharp::{optima, settle};
 use crate::rank::time_left::{poses_in_time, rescoring_seconds};
 use crate::search::coarse_to_fine::{FineSearched, search_finer};
@@ -241,8 +241,11 @@ impl<'a> Searched<'a> {
             pose_scorer,
             &candidates,
             (&clusters, &distinct),
-            plan.options.ranking.no_cluster,
-            2.0 * plan.options.kernel.tolerance * best_peak.abs(),
+            RowChoice {
+                every_pose: plan.options.ranking.no_cluster,
+                exact: plan.exact_rows(),
+                margin: 2.0 * plan.options.kernel.tolerance * best_peak.abs(),
+            },
             progress,
         );
         let error = check.error(plan, &found.peaks, &ranking);
@@ -497,7 +500,7 @@ impl Check {
     fn error(&self, plan: &DockPlan, peaks: &[Peak], ranking: &Ranking) -> MeasuredError {
         // Rows stand for clusters by their pose scores; the best score may be another pose's.
         let at_start = self.at_start(plan).iter().map(|exact| exact.score);
-        let rows = ranking.poses.iter().map(|row| row.search_score);
+        let rows = ranking.poses.iter().filter_map(|row| row.search_score);
         let best = error_scale(rows.chain(at_start), 0.0);
         MeasuredError::over(peaks, (&self.at_grid, &self.unfiltered), best)
     }

@@ -96,7 +96,10 @@ fn salt_bridges_are_of_charged_atoms() {
             ("P", residue, 'B', 7, "P", [9.0, 0.0, 0.0]),
             (name, residue, 'B', 7, "O", [0.0, 0.0, 0.0]),
         ];
-        Interface::of([&arginine, &molecule(&atoms)], 7.0).unwrap().salt_bridges == 1
+        Interface::of([&arginine, &molecule(&atoms)], 7.0)
+            .unwrap()
+            .salt_bridges
+            == 1
     };
     for (residue, charged, others) in [
         (
@@ -124,7 +127,10 @@ fn salt_bridges_are_of_charged_atoms() {
             atom("C", "C", [22.8, 0.0, 0.0]),
             atom(name, "O", [0.0, 0.0, 0.0]),
         ];
-        Interface::of([&arginine, &molecule(&atoms)], 7.0).unwrap().salt_bridges == 1
+        Interface::of([&arginine, &molecule(&atoms)], 7.0)
+            .unwrap()
+            .salt_bridges
+            == 1
     };
     for (residue, name, expected) in [
         ("SEP", "O1P", true),

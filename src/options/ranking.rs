@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 use super::definition::{Choice, Flag, options};
-use super::values::NOT_NEGATIVE;
+use super::values::{CountOrAll, NOT_NEGATIVE};
 
 options! {
     /// How poses become rows of the table.
@@ -21,6 +21,13 @@ options! {
         ///
         /// Refined poses within a step of the search of a better one are left out.
         no_cluster: bool = false, "", Flag;
+        /// Rows of poses.csv with exact scores: the best COUNT, or all.
+        ///
+        /// An exact score costs as much as a rotation of the search. Rows come in the order of the fast path's scores,
+        /// whose error each run measures; those beyond COUNT have no exact columns. With --no-cluster, and in ensembles,
+        /// all rows have them and are ordered by them.
+        #[serde(default)]
+        exact: Option<usize> = Some(200), "COUNT|all", CountOrAll;
     }
 }
 

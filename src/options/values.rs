@@ -289,6 +289,23 @@ pub fn size(text: &str) -> Result<u64, String> {
     Ok(bytes as u64)
 }
 
+/// A count of at least one, or `all`, which is `None`.
+pub(super) struct CountOrAll;
+
+impl Rule<Option<usize>> for CountOrAll {
+    fn read(&self, text: &str, _: &Path) -> Result<Option<usize>, Error> {
+        all_or_at_least_one(text).map(|AllOr(count)| count)
+    }
+
+    fn check(&self, count: &Option<usize>) -> Result<(), Error> {
+        count.map_or(Ok(()), |count| AT_LEAST_ONE.check(&count))
+    }
+
+    fn text(&self, count: &Option<usize>) -> Option<String> {
+        Some(count.map_or_else(|| "all".to_owned(), |count| count.to_string()))
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

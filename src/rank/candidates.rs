@@ -85,7 +85,7 @@ impl Candidate {
     }
 
     /// Whether the pose has left the grid of the search.
-    fn is_off_grid(&self) -> bool {
+    pub fn is_off_grid(&self) -> bool {
         self.refined || self.is_settled()
     }
 }

@@ -1,8 +1,9 @@
-//! The ranking: clusters by the fast path's scores, and every row that is reported by its exact score.
+//! The ranking: clusters by the fast path's scores, and exact scores of the best.
 //!
 //! The fast path's error is measured in every run and is far below the differences between clusters. An exact sum
-//! costs as much as a whole rotation of the search. So poses are merged and clustered by the fast path's values (the
-//! grid's, or the receptor field's if a pose was refined); rows of the table carry exact scores.
+//! costs as much as a whole rotation of the search. So poses are merged, clustered and ordered by the fast path's values
+//! (the grid's, or the receptor field's if a pose was refined). The best rows get exact scores, or all do; a list of
+//! every pose is exact and ordered by exact scores.
 //!
 //! If poses are rescored, all this goes by the pose score: the sum of the score and the rescoring terms. For rings it
 //! includes the score of copies beyond the neighbours.
@@ -50,8 +51,8 @@ pub struct RankedPose {
     pub pose: Pose,
     /// The score that orders the rows: `cluster_score` if rows are clusters, else `pose_score`.
     pub score: f64,
-    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better.
-    pub search_score: f64,
+    /// Exact f64 pair sum of the ranking kernel at `pose`; higher is better. `None` for rows beyond those that are exact.
+    pub search_score: Option<f64>,
     /// 1-based cluster number, best cluster first.
     pub cluster: Option<usize>,
     /// Number of poses in that cluster.
@@ -66,7 +67,7 @@ pub struct RankedPose {
     /// Score of that grid pose as the fast path computed it.
     pub score_grid: f64,
     /// Weighted terms at `pose` by effect (`Effect as usize`), which add up to `search_score`; `None` if the
-    /// effect is off.
+    /// effect is off or the row is not exact.
     pub terms: [Option<f64>; Effect::ALL.len()],
     /// Slices and unfiltered score of shape at `pose`; `None` without `--diagnostics`.
     pub shape: Option<ShapeParts>,
@@ -76,9 +77,10 @@ pub struct RankedPose {
     pub other_copies: Option<f64>,
     /// Its sharp fit; `None` if none was made.
     pub sharp: Option<SharpPose>,
-    /// Sum that ranks poses: `search_score`, the pose terms, `other_copies` and the score of the sharp fit.
-    pub pose_score: f64,
-    /// Standard deviations of `pose_score` above the mean of all kept poses; `None` if they do not differ.
+    /// Exact score of the pose: `search_score`, the pose terms, `other_copies` and the score of the sharp fit; `None` if the
+    /// row is not exact.
+    pub pose_score: Option<f64>,
+    /// Standard deviations of the pose's score above the mean of all kept poses; `None` if they do not differ.
     pub z_score: Option<f64>,
 }
 
@@ -92,20 +94,29 @@ pub(crate) struct Ranking {
 /// Most rows that a thread takes at once: refined ones take longer and come first.
 const ROWS_TOGETHER: usize = 8;
 
-/// Exactly scored rows: every distinct pose by exact score, or the best of each cluster by the cluster's score.
+/// Which rows a table has, and which of them are exact.
+#[derive(Clone, Copy)]
+pub(crate) struct RowChoice {
+    /// Whether every distinct pose is a row, and not the best of each cluster.
+    pub every_pose: bool,
+    /// Rows with exact scores; all if `None`, and then these order the rows. Otherwise the scores of the fast path do.
+    pub exact: Option<usize>,
+    /// Error by which the fast path may misjudge which pose of a cluster is best: all that come so near to its centre are
+    /// scored, if all rows are exact.
+    pub margin: f64,
+}
+
+/// The rows: every distinct pose by its score, or the best of each cluster by the cluster's score.
 ///
 /// Clusters are numbered by their scores. Ties stay in the order given.
-///
-/// The fast path may misjudge by `margin` which pose of a cluster is best, so all that come so near its centre are
-/// scored.
 pub(crate) fn report(
     pose_scorer: PoseScorer,
     candidates: &[Candidate],
     (clusters, distinct): (&[usize], &[bool]),
-    every_pose: bool,
-    margin: f64,
+    choice: RowChoice,
     progress: &dyn Progress,
 ) -> Ranking {
+    let every_pose = choice.every_pose;
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
@@ -122,30 +133,50 @@ pub(crate) fn report(
         centres[cluster] = centres[cluster].max(candidate.score);
         // Scores against the centre's, so that nothing overflows.
         weights[cluster] += ((candidate.score - centres[cluster]) / temperature).exp();
-        if is_distinct && (every_pose || candidate.score >= centres[cluster] - margin) {
+        let may_be_best = match choice.exact {
+            None => candidate.score >= centres[cluster] - choice.margin,
+            Some(_) => sizes[cluster] == 1,
+        };
+        if is_distinct && (every_pose || may_be_best) {
             wanted.push((candidate, cluster));
         }
     }
-    progress.stage("score", wanted.len() as u64);
-    let mut rows: Vec<(RankedPose, usize)> = Vec::new();
-    wanted
-        .into_par_iter()
-        .with_max_len(ROWS_TOGETHER)
-        .map(|(candidate, cluster)| {
-            let row = candidate.reported(pose_scorer);
-            progress.advance(1);
-            (row, cluster)
-        })
-        .collect_into_vec(&mut rows);
-    rows.retain(|(row, _)| row.pose_score.is_finite());
-    rows.sort_by(|(a, _), (b, _)| b.pose_score.total_cmp(&a.pose_score));
+    let with_company = |score: f64, cluster: usize| score + temperature * weights[cluster].ln();
+    if let Some(exact) = choice.exact {
+        // By what orders the rows, so that the first rows are the exact ones.
+        let score = |&(candidate, cluster): &(&Candidate, usize)| match every_pose {
+            true => candidate.score,
+            false => with_company(candidate.score, cluster),
+        };
+        wanted.sort_by(|a, b| score(b).total_cmp(&score(a)));
+        progress.stage("score", exact.min(wanted.len()) as u64);
+    } else {
+        progress.stage("score", wanted.len() as u64);
+    }
+    // Each row, its cluster, and the score that orders it.
+    let mut rows: Vec<(RankedPose, usize, f64)> = Vec::new();
+    let scored = |(place, (candidate, cluster)): (usize, (&Candidate, usize))| {
+        // Whether a refined pose stands is decided by exact scores.
+        let is_exact = choice.exact.is_none_or(|exact| place < exact) || candidate.refined;
+        if !is_exact {
+            return (candidate.unscored(), cluster, candidate.score);
+        }
+        let row = candidate.reported(pose_scorer);
+        progress.advance(1);
+        let exact = row.pose_score.filter(|_| choice.exact.is_none());
+        (row, cluster, exact.unwrap_or(candidate.score))
+    };
+    let wanted = wanted.into_par_iter().enumerate();
+    let wanted = wanted.with_max_len(ROWS_TOGETHER);
+    wanted.map(scored).collect_into_vec(&mut rows);
+    rows.retain(|(_, _, score)| score.is_finite());
+    rows.sort_by(|(_, _, a), (_, _, b)| b.total_cmp(a));
     // Rows come best first: the first of a cluster is its best.
     let mut order: Vec<(usize, f64)> = Vec::new();
     let mut seen = vec![false; count];
-    for (row, cluster) in &rows {
-        if !std::mem::replace(&mut seen[*cluster], true) {
-            let score = row.pose_score + temperature * weights[*cluster].ln();
-            order.push((*cluster, score));
+    for &(_, cluster, score) in &rows {
+        if !std::mem::replace(&mut seen[cluster], true) {
+            order.push((cluster, with_company(score, cluster)));
         }
     }
     order.sort_by(|(_, a), (_, b)| b.total_cmp(a));
@@ -155,15 +186,15 @@ pub(crate) fn report(
     }
     let mut poses: Vec<RankedPose> = rows
         .into_iter()
-        .filter_map(|(row, cluster)| {
+        .filter_map(|(row, cluster, of_pose)| {
             let (place, score) = places[cluster]?;
             let first = std::mem::replace(&mut seen[cluster], false);
             (first || every_pose).then_some(RankedPose {
                 cluster: Some(place + 1),
                 cluster_size: Some(sizes[cluster]),
                 cluster_score: Some(score),
-                score: if every_pose { row.pose_score } else { score },
-                z_score: background.z_score(row.pose_score),
+                score: if every_pose { of_pose } else { score },
+                z_score: background.z_score(of_pose),
                 ..row
             })
         })
@@ -246,22 +277,36 @@ impl Candidate {
             pose,
             pose_terms,
             other_copies: others,
-            pose_score: terms.score
-                + pose_terms.sum()
-                + others.unwrap_or(0.0)
-                + sharp.unwrap_or(0.0),
-            z_score: None,
+            pose_score: Some(
+                terms.score + pose_terms.sum() + others.unwrap_or(0.0) + sharp.unwrap_or(0.0),
+            ),
+            search_score: Some(terms.score),
+            refined: refined || self.is_settled(),
+            terms: std::array::from_fn(|effect| on[effect].then_some(terms.terms[effect])),
+            shape: diagnostics.then(|| scorer.shape(&pose)),
+            ..self.unscored()
+        }
+    }
+
+    /// Its row without exact scores, not yet in a cluster.
+    fn unscored(&self) -> RankedPose {
+        RankedPose {
+            pose: self.pose,
             score: 0.0,
-            search_score: terms.score,
+            search_score: None,
             cluster: None,
             cluster_size: None,
             cluster_score: None,
-            refined: refined || self.is_settled(),
-            sharp: self.sharp,
+            refined: self.is_off_grid(),
             rotation: self.rotation,
             score_grid: self.score_grid,
-            terms: std::array::from_fn(|effect| on[effect].then_some(terms.terms[effect])),
-            shape: diagnostics.then(|| scorer.shape(&pose)),
+            terms: [None; Effect::ALL.len()],
+            shape: None,
+            pose_terms: self.pose_terms,
+            other_copies: None,
+            sharp: self.sharp,
+            pose_score: None,
+            z_score: None,
         }
     }
 }
@@ -292,6 +337,12 @@ mod tests {
         let kernel = RankingKernel::new(options, 3.4, 3.4, 1.15).unwrap();
         ExactScorer::new(&kernel, &ball, &ball).unwrap().into()
     }
+
+    const ALL: RowChoice = RowChoice {
+        every_pose: true,
+        exact: None,
+        margin: 0.0,
+    };
 
     fn at(x: f64) -> Pose {
         Pose {
@@ -347,22 +398,57 @@ mod tests {
                 cluster_temperature: 0.1,
                 diagnostics: false,
             };
-            let ranking = report(
-                pose_scorer,
-                &candidates,
-                (&[0], &[true]),
-                true,
-                0.0,
-                &NoProgress,
-            );
+            let ranking = report(pose_scorer, &candidates, (&[0], &[true]), ALL, &NoProgress);
             ranking.poses[0].clone()
         };
         let undone = ascent(touching, overlapping);
         assert!(!undone.refined && undone.pose == at(touching));
-        assert!((undone.search_score - exact(touching)).abs() < 1e-9 * undone.search_score.abs());
+        let score = undone.search_score.unwrap();
+        assert!((score - exact(touching)).abs() < 1e-9 * score.abs());
         let stands = ascent(overlapping, touching);
         assert!(stands.refined && stands.pose == at(touching));
         assert_eq!(stands.terms[1..], [None; 3]);
+    }
+
+    /// Clusters of one pose each, the fast path a little off: it orders all rows, and the best have exact scores.
+    #[test]
+    fn the_best_rows_are_exact_and_one_score_orders_all() {
+        let scorer = scorer();
+        let off = |x: f64| scorer.score_only(&at(x)) * (1.0 + 1e-3 * x.sin());
+        let places: Vec<f64> = (0..12).map(|step| 3.0 + 0.2 * f64::from(step)).collect();
+        let peak = |x: &f64| Peak {
+            score: off(*x),
+            rotation: 0,
+            voxel: 0,
+        };
+        let peaks: Vec<Peak> = places.iter().map(peak).collect();
+        let placed = |x: &f64| RefinedPose::best_of((at(*x), off(*x)), None);
+        let placed: Vec<RefinedPose> = places.iter().map(placed).collect();
+        let candidates = candidates(&peaks, &placed, &[], None);
+        let pose_scorer = PoseScorer {
+            scorer: &scorer,
+            rescorer: None,
+            on: [true, false, false, false],
+            space: &PoseSpace::Free,
+            cluster_temperature: 0.1,
+            diagnostics: false,
+        };
+        let clusters: Vec<usize> = (0..12).collect();
+        let choice = RowChoice {
+            every_pose: false,
+            exact: Some(5),
+            margin: 0.0,
+        };
+        let clusters = (&clusters[..], &[true; 12][..]);
+        let rows = report(pose_scorer, &candidates, clusters, choice, &NoProgress).poses;
+        assert_eq!(rows.len(), 12);
+        for (place, row) in rows.iter().enumerate() {
+            let x = row.pose.translation.x;
+            assert_eq!(row.score, off(x));
+            let exact = (place < 5).then(|| scorer.score_only(&at(x)));
+            assert_eq!((row.search_score, row.pose_score), (exact, exact));
+            assert!(place == 0 || rows[place - 1].score >= row.score);
+        }
     }
 
     /// Found by a user: a flat face slides on another at nearly the same score. That cluster came before the joint
@@ -407,12 +493,13 @@ mod tests {
                 diagnostics: false,
             };
             let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);
-            let ranking = report(pose_scorer, &candidates, clusters, false, 0.0, &NoProgress);
+            let choice = RowChoice {
+                every_pose: false,
+                ..ALL
+            };
+            let ranking = report(pose_scorer, &candidates, clusters, choice, &NoProgress);
             let first = &ranking.poses[0];
-            (
-                first.cluster_size,
-                first.cluster_score == Some(first.pose_score),
-            )
+            (first.cluster_size, first.cluster_score == first.pose_score)
         };
         assert_eq!(first(LengthUnit::Angstrom), (Some(5), false));
         assert_eq!(first(LengthUnit::File), (Some(1), true));

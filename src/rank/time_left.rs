@@ -31,14 +31,18 @@ pub(crate) fn poses_in_time(
         return count;
     }
     let rescoring = rescoring_seconds((peaks, placed), rescorer);
-    // Rows are exactly scored: one per cluster, about as many as there are by the search's own scores, or all.
+    // Rows are exactly scored: the best, of about as many clusters as there are by the search's own scores, or all.
     let scored = if options.ranking.no_cluster {
         1.0
     } else {
         let unscored = candidates(peaks, placed, &[], None);
         let clusters = clusters_of(&unscored, body, options.ranking.cluster_radius);
         let count = clusters.iter().max().map_or(0, |last| last + 1);
-        count as f64 / unscored.len().max(1) as f64
+        let exact = options
+            .ranking
+            .exact
+            .map_or(count, |exact| exact.min(count));
+        exact as f64 / unscored.len().max(1) as f64
     };
     within(left, rescoring + scored * scoring, count)
 }

@@ -1,5 +1,7 @@
 use std::path::Path;
 
+use nalgebra::Vector3;
+
 use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
 
 use super::*;
@@ -97,4 +99,67 @@ fn molecules_out_of_reach_stay() {
     assert_eq!((refined.before.total(), refined.after.total()), (0.0, 0.0));
     let packing = refined.packing.unwrap();
     assert!(packing.moved == 0 && packing.exact && !refined.has_moved_atoms());
+}
+
+/// The unbound molecules clash in the place of the bound ones. Refinement leaves no clash, or as good as none, and atoms
+/// that move keep their bonds, their hands and flat peptide bonds.
+#[test]
+fn minimisation_parts_what_clashes_and_keeps_shapes() {
+    let molecules = ["receptor_unbound", "ligand_unbound"].map(example);
+    let refiner = Refiner::new(molecules.each_ref(), ALL).unwrap();
+    for pose in [shifted(0.0), shifted(-1.0)] {
+        let refined = refiner.refine(&pose, &mut PairList::default()).unwrap();
+        assert!(refined.before.clashes > 20 && refined.after.clashes <= 1);
+        // Packing turns side chains, so shapes are compared with those that it left.
+        let repacker = Repacker::new(&molecules[0], &molecules[1], RepackOptions::default());
+        let packed = repacker.repack(&refined.pose);
+        for (side, packed) in [packed.receptor, packed.ligand].iter().enumerate() {
+            let after = refined.molecule(side, &molecules[side]);
+            shapes_agree(packed, &after);
+        }
+    }
+}
+
+/// Checks bonds, volumes spanned by CA and its neighbours, and torsions of peptide bonds.
+fn shapes_agree(before: &Molecule, after: &Molecule) {
+    let place = |molecule: &Molecule, atom: usize| Vector3::from(molecule.atoms[atom].position);
+    let distance = |of: &Molecule, a: usize, b: usize| (place(of, a) - place(of, b)).norm();
+    let count = before.atoms.len();
+    let bonded: Vec<Vec<usize>> = (0..count)
+        .map(|a| {
+            let others = (0..count).filter(|&b| b != a);
+            others.filter(|&b| distance(before, a, b) < 1.9).collect()
+        })
+        .collect();
+    let mut torsions = 0;
+    for (a, others) in bonded.iter().enumerate() {
+        for &b in others {
+            let stretched = distance(after, a, b) - distance(before, a, b);
+            assert!(stretched.abs() < 0.1, "bond of {a} and {b}: {stretched}");
+        }
+        let name = |atom: usize| before.atoms[atom].name.as_str();
+        if let ("CA", [x, y, z]) = (name(a), &others[..]) {
+            let volume = |of: &Molecule| {
+                let [x, y, z] = [x, y, z].map(|&end| place(of, end) - place(of, a));
+                x.dot(&y.cross(&z))
+            };
+            assert!(volume(before) * volume(after) > 0.0, "hand of {a}");
+        }
+        let next = others.iter().find(|&&b| name(a) == "C" && name(b) == "N");
+        let alpha = |of: usize| bonded[of].iter().find(|&&end| name(end) == "CA");
+        if let Some(&next) = next
+            && let (Some(&first), Some(&last)) = (alpha(a), alpha(next))
+        {
+            let sine = |of: &Molecule| {
+                let [u, v, w] = [(first, a), (a, next), (next, last)]
+                    .map(|(from, to)| place(of, to) - place(of, from));
+                let (m, n) = (u.cross(&v), v.cross(&w));
+                v.normalize().dot(&m.cross(&n)) / (m.norm() * n.norm())
+            };
+            let turned = (sine(after) - sine(before)).abs();
+            assert!(turned < 0.2, "peptide bond of {a}: {turned}");
+            torsions += 1;
+        }
+    }
+    assert!(torsions > 20, "{torsions}");
 }

@@ -126,7 +126,9 @@ impl Ensemble {
         } = &self.request;
         let specs = self.conformations(member).map(|one| one.spec.clone());
         let bodies = Bodies::of(specs, &given.options)?;
-        let request = Request::of(bodies, native.clone(), given.clone());
+        let mut request = Request::of(bodies, native.clone(), given.clone());
+        // Rows of all members are ordered together.
+        request.options.ranking.exact = None;
         let place = (folder, *force);
         let mut docking = Docking::prepare(request, *wanted, place, Clock::start(), console)?;
         docking.shown = directory.join(MEMBERS).join(self.name(member));

@@ -14,7 +14,8 @@ pub const BEST: usize = 10;
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
     let names = appended.iter().map(|column| format!("|{}", column.name));
-    let header = "rank|score|cluster_size|pose_score|z_score".to_owned() + &names.collect::<String>();
+    let header =
+        "rank|score|cluster_size|pose_score|z_score".to_owned() + &names.collect::<String>();
     let tenths = |value: Option<f64>| value.map_or_else(String::new, |value| format!("{value:.1}"));
     let lines = firsts(ranking).into_iter().take(BEST).map(|index| {
         let row = &ranking[index];
@@ -23,7 +24,7 @@ pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
             (index + 1).to_string(),
             tenths(Some(row.score)),
             size.unwrap_or_default(),
-            tenths(Some(row.pose_score)),
+            tenths(row.pose_score),
             tenths(row.z_score),
         ];
         line.extend(appended.iter().map(|column| {
@@ -113,7 +114,7 @@ mod tests {
         RankedPose {
             pose: Pose::identity(),
             score,
-            search_score: score,
+            search_score: Some(score),
             cluster,
             cluster_score: None,
             cluster_size: cluster.map(|_| 2),
@@ -125,7 +126,7 @@ mod tests {
             shape: None,
             pose_terms: TermValues::default(),
             other_copies: None,
-            pose_score: score,
+            pose_score: Some(score),
             z_score: None,
         }
     }
@@ -169,7 +170,7 @@ mod tests {
     fn clusters_show_the_score_that_orders_them() {
         let in_company = |score: f64, cluster, cluster_score: f64| RankedPose {
             score: cluster_score,
-            pose_score: score,
+            pose_score: Some(score),
             ..pose(score, Some(cluster))
         };
         let ranking = [in_company(8.0, 1, 11.0), in_company(9.0, 2, 10.0)];

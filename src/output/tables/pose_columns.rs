@@ -60,8 +60,8 @@ pub(crate) fn columns(
         column("score", |row| row.score),
         count("cluster", |row| row.cluster),
         count("cluster_size", |row| row.cluster_size),
-        column("pose_score", |row| row.pose_score),
-        column("search_score", |row| row.search_score),
+        optional("pose_score", |row| row.pose_score),
+        optional("search_score", |row| row.search_score),
     ];
     for effect in Effect::ALL {
         columns.push(optional(effect.name(), move |row| {

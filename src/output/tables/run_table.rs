@@ -119,7 +119,7 @@ mod tests {
         RankedPose {
             pose: Pose::from_parts(quaternion, translation),
             score: 1.0 / 3.0,
-            search_score: 0.25,
+            search_score: Some(0.25),
             cluster: None,
             cluster_size: Some(4),
             cluster_score: None,
@@ -136,7 +136,7 @@ mod tests {
                 .with("atom_pair", -7.0)
                 .with("relaxed", 2.5),
             other_copies: None,
-            pose_score: 1.0 / 3.0,
+            pose_score: Some(1.0 / 3.0),
             z_score: Some(2.5),
         }
     }
