@@ -12,7 +12,7 @@ options! {
         /// Rotations of the ligand, spread evenly over all: their number, or the angle between them, such as 15deg.
         ///
         /// An angle stands for a number, 3600 (15/D)^3, so that 6deg gives 56,250. By default a small ligand has fewer
-        /// than 3600: 3600 (R/15.5)^3 if its radius of gyration R is below 15.5 Å, 600 at the least. With --symmetry the option counts axes,
+        /// than 3600: 3600 (R/14)^3 if its radius of gyration R is below 14 Å, 1000 at the least. With --symmetry the option counts axes,
         /// by default 900 over half a sphere or 90 across a ring's own.
         rotations: usize = 3600, "COUNT|ANGLE", Rotations(ROTATIONS);
         /// Search again, among this many rotations, about the best: a number or an angle.

@@ -25,9 +25,9 @@ pub(crate) fn left_out(name: &str, value: &str, context: &str) -> Error {
 }
 
 /// Radius of gyration in Å below which a ligand needs fewer rotations than the default.
-const SMALL: f64 = 15.5;
+const SMALL: f64 = 14.0;
 /// Rotations of the smallest ligands.
-const FEWEST_ROTATIONS: usize = 600;
+const FEWEST_ROTATIONS: usize = 1000;
 
 /// Radius of gyration of a molecule's heavy atoms, Å.
 fn radius_of_gyration(molecule: &Molecule) -> f64 {

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
-use crate::report::viewer::{Viewer, packed};
+use crate::report::viewer::{ADDRESS, Viewer, packed};
 use knotdock::output::files::seal::{BEGINNING, sealed};
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
 
@@ -22,9 +22,18 @@ const SCRIPTS: [&str; 10] = [
     include_str!("page/main.js"),
 ];
 
-/// Security policy of a report: it loads nothing from outside.
-const POLICY: &str = "default-src 'none'; script-src 'unsafe-inline' blob:; style-src 'unsafe-inline'; \
-                      img-src data: blob:; worker-src blob:; base-uri 'none'; form-action 'none'";
+/// Security policy of a report: it loads nothing from outside, but for the library of the view, on request, if the page
+/// does not hold it.
+fn policy(has_viewer: bool) -> String {
+    let library = match has_viewer {
+        true => String::new(),
+        false => format!(" {ADDRESS}"),
+    };
+    format!(
+        "default-src 'none'; script-src 'unsafe-inline' blob:{library}; style-src 'unsafe-inline'; img-src data: blob:; \
+         worker-src blob:; base-uri 'none'; form-action 'none'"
+    )
+}
 
 pub(super) struct Page<'a> {
     pub title: String,
@@ -41,9 +50,10 @@ impl Page<'_> {
         let mut text = format!(
             "{BEGINNING} {VERSION_WITH_COMMIT} -->\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
              <meta name=\"viewport\" content=\"width=device-width, initial-scale=1\">\n\
-             <meta http-equiv=\"Content-Security-Policy\" content=\"{POLICY}\">\n\
+             <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
              <link rel=\"icon\" href=\"data:,\">\n<title>{title}</title>\n<style>\n{style}</style>\n</head>\n<body>\n\
              <header><h1>{title}</h1></header>\n<main>\n",
+            policy = policy(self.viewer.is_some()),
             style = include_str!("page/style.css"),
         );
         for section in &self.sections {

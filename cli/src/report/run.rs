@@ -19,8 +19,8 @@ use serde_json::{Value, json};
 
 use crate::report::columns::{ShownColumn, is_term, shown};
 use crate::report::html::{Page, section};
-use crate::report::shown::{LACKING, placement, rounded, solid};
-use crate::report::viewer::Viewer;
+use crate::report::shown::{placement, rounded, solid};
+use crate::report::viewer::{Viewer, on_request};
 use crate::report::{MAX_ROWS, run_cost, run_words};
 use knotdock::interface::{Contact, ResidueName, heavy_residues};
 use knotdock::options::DockOptions;
@@ -233,13 +233,13 @@ impl RunReport<'_> {
     fn page(&self, rows: usize, viewer: Option<&Viewer>) -> String {
         let data = data(self, rows);
         let explorer = include_str!("page/explorer.html");
-        let lacking = match viewer {
-            Some(_) => "",
-            None => LACKING,
-        };
         let mut sections = vec![
             section("summary", "Summary", &run_words::summary(self, rows)),
-            section("poses", "Poses", &explorer.replace("{{lacking}}", lacking)),
+            section(
+                "poses",
+                "Poses",
+                &explorer.replace("{{lacking}}", &on_request(viewer)),
+            ),
         ];
         if self.contacts.is_some() {
             let consensus = include_str!("page/consensus.html");

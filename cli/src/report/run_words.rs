@@ -4,9 +4,12 @@ use std::fmt::Write as _;
 
 use serde_json::Value;
 
+use crate::messages::shown::shell_word;
 use crate::report::html::{escaped, paragraph};
 use crate::report::run::{RunReport, active};
 use crate::tables::report::counted;
+use knotdock::interface::ResidueName;
+use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::table_text::named_columns::listed;
 
 /// Name of a file without its folder.
@@ -97,8 +100,80 @@ pub(super) fn summary(report: &RunReport, shown: usize) -> String {
             ));
         }
     }
-    sentences.push(found(report, shown));
-    paragraph(&sentences) + &warnings(record)
+    let answer = touched(report).into_iter().chain([found(report, shown)]);
+    let answer: Vec<String> = answer.collect();
+    paragraph(&answer) + &next(report) + &paragraph(&sentences) + &warnings(record)
+}
+
+/// Residues of a side that are named as those that the best clusters touch.
+const NAMED: usize = 5;
+
+/// The residues that most of the best clusters touch.
+fn touched(report: &RunReport) -> Option<String> {
+    let contacts = report.contacts?;
+    let sides = contacts.shares().map(|mut shares| {
+        shares.sort_by(|a, b| b.clusters.cmp(&a.clusters));
+        let named = shares.iter().filter(|share| share.clusters > 0).take(NAMED);
+        let words = named.map(|share| {
+            let ResidueName {
+                chain,
+                number,
+                name,
+            } = &share.residue;
+            let chain = if chain.is_empty() { "_" } else { chain };
+            format!("{chain}:{number} {name} ({:.0}%)", 100.0 * share.share)
+        });
+        words.collect::<Vec<_>>().join(", ")
+    });
+    let [receptor, ligand] = sides;
+    (!receptor.is_empty()).then(|| {
+        let [first, second] = match Arrangement::from(report.options.search.symmetry).is_ring() {
+            true => ["one copy", "the next one"],
+            false => ["the receptor", "the ligand"],
+        };
+        let count = contacts.firsts.len();
+        format!(
+            "Of the best {}, most touch {receptor} of {first}, and {ligand} of {second}.",
+            counted(count, "cluster")
+        )
+    })
+}
+
+/// What to do next, with the commands.
+fn next(report: &RunReport) -> String {
+    if report.contacts.is_none() || Arrangement::from(report.options.search.symmetry).is_ring() {
+        return String::new();
+    }
+    let path = |side: &str| {
+        let input = &report.record["inputs"][side];
+        let path = input["path"].as_str().unwrap_or_default();
+        let chains = input["chains"].as_str().map(|chains| format!(":{chains}"));
+        shell_word(&format!("{path}{}", chains.unwrap_or_default())).into_owned()
+    };
+    let directory = shell_word(report.directory).into_owned();
+    let lines = [
+        (
+            "If you know residues of the interface, dock with them: nothing helps as much",
+            format!(
+                "knotdock dock {} {} --active-receptor CHAIN:NUMBERS --active-ligand CHAIN:NUMBERS -o guided",
+                path("receptor"),
+                path("ligand")
+            ),
+        ),
+        (
+            "Refine further rows, as those in top/ are",
+            format!("knotdock refine {directory} --ranks 1-50"),
+        ),
+    ];
+    let mut html = "<dl id=\"next\">\n".to_owned();
+    for (what, command) in lines {
+        let _ = writeln!(
+            html,
+            "<dt>{what}</dt><dd><code>{}</code></dd>",
+            escaped(&command)
+        );
+    }
+    html + "</dl>\n"
 }
 
 /// The rows in the light of a known complex.
@@ -110,8 +185,9 @@ fn found(report: &RunReport, shown: usize) -> String {
     let good: Vec<usize> = (0..shown).filter(is_good).collect();
     let has_native = shown > 0 && report.table.field(0, "capri").is_some();
     match (has_native, good.first()) {
-        (false, _) => "No known complex was given, so that nothing here says which pose is right: look at the best \
-                       clusters, not at the first alone."
+        (false, _) => "No known complex was given, so nothing here says which pose is right. Of unbound pairs about a third \
+                       have a right one among the first ten clusters: look at all of them, and at what is known of \
+                       the interface."
             .to_owned(),
         (true, None) => "By the known complex no row is acceptable or better.".to_owned(),
         (true, Some(&first)) => {

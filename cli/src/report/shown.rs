@@ -7,12 +7,6 @@ use crate::report::columns::ShownColumn;
 use knotdock::output::files::assemblies::Surface;
 use knotdock_scoring::se3::Pose;
 
-/// Text in place of the view, if there is none.
-pub(super) const LACKING: &str = "<p>This report has no three-dimensional view: the program was built without it. \
-                                  <code>npm install 3dmol</code> fetches it, and <code>--viewer \
-                                  node_modules/3dmol</code> of <code>knotdock report</code>, <code>collide</code>, \
-                                  <code>obstacle</code> and <code>morph</code> adds it.</p>";
-
 const MAX_TRIANGLES: usize = 100_000;
 
 /// The rows of a table as its columns show them.

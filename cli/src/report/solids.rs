@@ -6,8 +6,8 @@ use serde_json::{Value, json};
 use crate::report::MAX_ROWS;
 use crate::report::columns::of_table;
 use crate::report::html::{Page, paragraph, section};
-use crate::report::shown::{LACKING, placement, rows, solid};
-use crate::report::viewer::Viewer;
+use crate::report::shown::{placement, rows, solid};
+use crate::report::viewer::{Viewer, on_request};
 use knotdock::output::files::assemblies::Surface;
 use knotdock_scoring::se3::Pose;
 
@@ -50,11 +50,8 @@ impl SolidsReport<'_> {
             "bodies": self.surfaces.iter().map(solid).collect::<Value>(),
         });
         let words = paragraph(&self.sentences);
-        let lacking = match viewer {
-            Some(_) => "",
-            None => LACKING,
-        };
-        let explorer = include_str!("page/solids.html").replace("{{lacking}}", lacking);
+        let explorer = include_str!("page/solids.html");
+        let explorer = explorer.replace("{{lacking}}", &on_request(viewer));
         Page {
             title: self.title,
             sections: vec![

@@ -14,6 +14,24 @@ use knotdock::bounded_read::read_bounded;
 use knotdock::output::files::file_error;
 use knotdock_structures::Error;
 
+/// Address of the library, for reports of builds without it; the version is that of viewer/package-lock.json.
+pub(super) const ADDRESS: &str = "https://cdn.jsdelivr.net/npm/3dmol@2.5.5/build/3Dmol-min.js";
+/// SHA-384 of the library, which a browser checks before it runs it.
+const INTEGRITY: &str = "sha384-OsczYbldvrHgslr9fFp/i4GiLSeuw9l+QIlv99ITw8soOwXcoGeflFMLg+CU/X1d";
+
+/// What stands in place of the view of a page without the library: nothing is loaded before the button is pressed.
+pub(super) fn on_request(viewer: Option<&Viewer>) -> String {
+    match viewer {
+        Some(_) => String::new(),
+        None => format!(
+            "<p id=\"no-view\">This build has no three-dimensional view. <button type=\"button\" id=\"load-view\" \
+             data-address=\"{ADDRESS}\" data-integrity=\"{INTEGRITY}\">Load it from cdn.jsdelivr.net</button> That \
+             fetches 3Dmol.js and sends nothing of this page. Without a network, <code>knotdock report --viewer \
+             DIR</code> puts the view into the page (<code>npm install 3dmol</code> fetches it).</p>"
+        ),
+    }
+}
+
 /// The place of the library.
 #[derive(Args, Clone, Debug)]
 pub struct ViewerArguments {

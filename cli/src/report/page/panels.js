@@ -11,10 +11,10 @@ function shownTerms(data, column) {
   return [terms.slice(0, COLOURS.length), terms.slice(COLOURS.length)];
 }
 
-/** The parts of a row's score, by their names for people. */
+/** The parts of a row's score, by their columns. */
 function partsOf(data, column, row, [shown, others]) {
   const value = (name) => data.rows[row][column(name)] ?? 0;
-  const parts = Object.fromEntries(shown.map((name) => [name.replaceAll("_", " "), value(name)]));
+  const parts = Object.fromEntries(shown.map((name) => [name, value(name)]));
   if (others.length > 0) parts["other terms"] = others.reduce((sum, name) => sum + value(name), 0);
   return parts;
 }

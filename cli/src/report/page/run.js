@@ -1,3 +1,5 @@
+// Clusters that are shown and saved together.
+const BEST = 10;
 const CLASSES = ["incorrect", "acceptable", "medium", "high"];
 
 /** The report of a run. */
@@ -52,8 +54,7 @@ async function showRun(data) {
     const least_class = CLASSES.indexOf(byId("filter-class").value);
     const wanted = byId("filter-residue").value.trim();
     const touched = wanted && !isMesh ? matching(data.bodies, wanted) : null;
-    const seen = new Set();
-    const firsts = data.rows.map((_, row) => { const is = clusters[row] === null || !seen.has(clusters[row]); seen.add(clusters[row]); return is; });
+    const firsts = firstsOf(clusters);
     table.filter((row) => {
       const fields = data.rows[row];
       return (fields[column("score")] ?? -Infinity) >= least
@@ -69,24 +70,39 @@ async function showRun(data) {
   filters.addEventListener("reset", () => setTimeout(() => { filter(); table.showAll(false); }));
   byId("all-columns").addEventListener("change", (event) => table.showAll(event.target.checked));
   axis.addEventListener("change", () => drawFunnelOf(chosen));
-  byId("download").addEventListener("click", () => download(data, chosen, column));
+  byId("download").addEventListener("click", () => download(data, [chosen], column));
+  const best = data.rows.map((_, row) => row).filter((row) => firstsOf(clusters)[row]).slice(0, BEST);
+  byId("download-best").addEventListener("click", () => download(data, best, column));
   const cannot = data.bodies.some((body) => body.format !== "pdb");
-  if (cannot && !isMesh) set(byId("download"), { disabled: true, title: "PDB cannot hold these molecules; `knotdock export` writes mmCIF" });
+  if (cannot && !isMesh) for (const id of ["download", "download-best"]) set(byId(id), { disabled: true, title: "PDB cannot hold these molecules; `knotdock export` writes mmCIF" });
 
-  const script = await unpacked("viewer");
-  if (script === null || data.rows.length === 0) {
-    for (const id of ["scene", "legend", "zoom-all", "zoom-interface", "show-sticks", "show-known", "colour-by"]) {
-      const element = byId(id);
-      (element.closest("label") ?? element).hidden = true;
-    }
-  } else {
-    // A script element runs what it is given, in this page and before it is left.
-    document.head.append(make("script", {}, script));
+  await withLibrary(["scene", "legend", "zoom-all", "zoom-interface", "show-sticks", "show-known", "colour-by"], () => {
+    if (data.rows.length === 0) return;
     scene = makeScene(byId("scene"), data);
     wire(scene, data, isMesh);
-  }
+    drawBest(scene, data, column, choose);
+    scene.show(Math.max(chosen, 0));
+  });
   if (data.rows.length > 0) choose(0);
   window.knotdock = { choose, picture: () => scene?.picture() };
+}
+
+/** Whether each row is the first of its cluster. */
+function firstsOf(clusters) {
+  const seen = new Set();
+  return clusters.map((cluster) => { const is = cluster === null || !seen.has(cluster); seen.add(cluster); return is; });
+}
+
+/** Small pictures of the best clusters, each of which selects its row. */
+function drawBest(scene, data, column, choose) {
+  const clusters = data.rows.map((row) => row[column("cluster")] ?? null);
+  const rows = firstsOf(clusters).flatMap((is, row) => is ? [row] : []).slice(0, BEST);
+  byId("best").replaceChildren(...rows.map((row) => {
+    scene.show(row);
+    const rank = data.rows[row][column("rank")];
+    const picture = make("img", { src: scene.picture(), alt: "" });
+    return make("button", { type: "button", "aria-label": `Rank ${rank}`, click: () => choose(row) }, picture, String(rank));
+  }));
 }
 
 /** Connects the controls of the view. */
@@ -137,11 +153,13 @@ function matching(bodies, wanted) {
   })));
 }
 
-/** Saves the complex of a row. */
-function download(data, row, column) {
-  const rank = data.rows[row][column("rank")];
-  const text = complexAsPdb(data.bodies, data.placed[row], data.refined[row], data.chains, `knotdock, rank ${rank}, from a report`);
-  const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: "chemical/x-pdb" })), download: `rank_${String(rank).padStart(4, "0")}.pdb` });
+/** Saves the complexes of rows as one PDB file, of several rows with a model each. */
+function download(data, rows, column) {
+  const ranks = rows.map((row) => data.rows[row][column("rank")]);
+  const texts = rows.map((row, place) => complexAsPdb(data.bodies, data.placed[row], data.refined[row], data.chains, `knotdock, rank ${ranks[place]}, from a report`));
+  const models = texts.map((text, place) => `MODEL     ${String(place + 1).padStart(4)}\n${text.replace(/END\n$/, "ENDMDL\n")}`);
+  const [text, name] = rows.length === 1 ? [texts[0], `rank_${String(ranks[0]).padStart(4, "0")}`] : [`${models.join("")}END\n`, "best"];
+  const link = make("a", { href: URL.createObjectURL(new Blob([text], { type: "chemical/x-pdb" })), download: `${name}.pdb` });
   link.click();
   URL.revokeObjectURL(link.href);
 }

@@ -145,6 +145,25 @@ function makeScene(root, data) {
   };
 }
 
+/** Calls `show` once the library of the view is there: at once if the page holds it, else when its button is pressed. */
+async function withLibrary(ids, show) {
+  const hide = (on) => ids.map(byId).forEach((element) => { (element.closest("label") ?? element).hidden = on; });
+  const script = await unpacked("viewer");
+  if (script !== null) {
+    // A script element runs what it is given, in this page and before it is left.
+    document.head.append(make("script", {}, script));
+    return show();
+  }
+  hide(true);
+  byId("load-view")?.addEventListener("click", ({ target }) => {
+    target.disabled = true;
+    const { address, integrity } = target.dataset;
+    const failed = () => { target.replaceWith("It could not be loaded: there is no network, or the file is not the one that this page expects."); };
+    const loaded = () => { byId("no-view").remove(); hide(false); show(); };
+    document.head.append(make("script", { src: address, integrity, crossorigin: "anonymous", load: loaded, error: failed }));
+  });
+}
+
 /** Lets the arrow keys turn the view. */
 function turnByKeys(element, scene) {
   element.addEventListener("keydown", (event) => {

@@ -13,16 +13,13 @@ async function showSolids(data) {
     byId("scene").setAttribute("aria-label", `${data.sides[0]} and ${data.sides[1]}, row ${data.rows[row][first]}, turned with the mouse or the arrow keys`);
   }
 
-  const script = await unpacked("viewer");
-  if (script === null || data.rows.length === 0) {
-    for (const id of ["scene", "legend", "zoom-all"]) byId(id).hidden = true;
-  } else {
-    document.head.append(make("script", {}, script));
+  await withLibrary(["scene", "legend", "zoom-all"], () => {
+    if (data.rows.length === 0) return;
     scene = makeScene(byId("scene"), data);
     byId("zoom-all").addEventListener("click", () => scene.whole());
     turnByKeys(byId("scene"), scene);
     byId("legend").replaceChildren(...legend([[RECEPTOR, data.sides[0]], [LIGANDS[0], data.sides[1]]]).children);
-  }
+  });
   if (data.rows.length > 0) choose(0);
   window.knotdock = { choose, picture: () => scene?.picture() };
 }
