@@ -104,7 +104,7 @@ fn an_exported_ensemble_is_measured() {
     ]);
     for command in [
         "dock receptor.pdb ligand.pdb --native native.pdb --rotations 20 --write-top 0 -o run --quiet",
-        "export run --rank 1-3 --format ensemble -o out",
+        "export run --rank 1-3 --raw --format ensemble -o out",
     ] {
         succeed(folder.path(), command.split_whitespace());
     }

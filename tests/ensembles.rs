@@ -83,7 +83,7 @@ fn the_same_conformation_twice_doubles_every_cluster() {
     let folder = place();
     run(
         folder.path(),
-        &format!("dock receptor.pdb ligand.pdb {SHORT} -o one"),
+        &format!("dock receptor.pdb ligand.pdb {SHORT} --exact all --raw -o one"),
     );
     run(
         folder.path(),
@@ -154,7 +154,7 @@ fn models_of_a_file_are_ranked_together() {
         .unwrap();
     run(
         folder.path(),
-        &format!("export run --rank {},1 -o out", row + 1),
+        &format!("export run --rank {},1 --raw -o out", row + 1),
     );
     let complex = fs::read_to_string(folder.path().join(format!("out/rank_{:04}.pdb", row + 1)));
     let first = moved("ligand_unbound", &pose(&found[row]).after(&motion()));

@@ -70,7 +70,12 @@ fn a_near_native_pose_is_among_the_first_three() {
         .unwrap();
     let mut checked = 0;
     for (row, record) in table.rows().iter().zip(scores.records()).step_by(7) {
-        let printed: f64 = record.unwrap()[column].parse().unwrap();
+        let field = record.unwrap()[column].to_owned();
+        // The best 200 rows are exact, and no other.
+        assert_eq!(field.is_empty(), row.rank > 200);
+        let Ok(printed) = field.parse::<f64>() else {
+            continue;
+        };
         let again = scorer.score(&row.pose).score;
         assert!(
             (again - printed).abs() <= 1e-6 * printed.abs().max(1.0),
@@ -79,5 +84,5 @@ fn a_near_native_pose_is_among_the_first_three() {
         );
         checked += 1;
     }
-    assert!(checked >= 50);
+    assert!(checked >= 28);
 }

@@ -126,7 +126,7 @@ fn complexes_of_a_run_score_as_its_rows() {
     let folder = place();
     run(
         folder.path(),
-        "dock receptor.pdb ligand.pdb --rotations 120 --poses 100 --write-top 3 --sharp off -o run --quiet",
+        "dock receptor.pdb ligand.pdb --rotations 120 --poses 100 --write-top 3 --raw --sharp off -o run --quiet",
     );
     let table = rows(&folder.path().join("run"));
     let words = "run/top/rank_0001.pdb run/top/rank_0002.pdb run/top/rank_0003.pdb -o all.csv --contacts pairs.csv";

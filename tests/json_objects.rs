@@ -98,7 +98,7 @@ fn dock_says_where_the_run_is_and_what_is_best() {
     );
     let columns = fs::read_to_string(folder.path().join("run/poses.csv")).unwrap();
     assert!(columns.lines().next().unwrap().ends_with(
-        "unresolved,termini,other_copies,sharp,sharp_energy,sharp_clashes,z_score,qw,qx,qy,qz,tx,ty,tz,irmsd,lrmsd,fnat,dockq,capri"
+        "unresolved,termini,other_copies,sharp,sharp_energy,sharp_clashes,z_score,qw,qx,qy,qz,tx,ty,tz,irmsd,lrmsd,fnat,dockq,capri,complex_clashes,complex_irmsd"
     ));
 }
 

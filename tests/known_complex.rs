@@ -242,8 +242,16 @@ fn complex_files_are_measured_where_they_stand() {
     let folder = place();
     let native = atoms("receptor_bound", 'E') + &atoms("ligand_bound", 'I');
     fs::write(folder.path().join("native.pdb"), native).unwrap();
-    let dock = "dock receptor.pdb ligand.pdb --native native.pdb --rotations 60 --write-top 3 -o run --quiet";
-    succeed(folder.path(), dock.split_whitespace());
+    let dock =
+        "dock receptor.pdb ligand.pdb --native native.pdb --rotations 60 --write-top 3 --quiet";
+    succeed(folder.path(), format!("{dock} --raw -o run").split(' '));
+    // A refined complex is measured as it was written.
+    succeed(folder.path(), format!("{dock} -o refined").split(' '));
+    let evaluate = "evaluate refined/top/rank_0001.pdb --native native.pdb";
+    let found = measured(folder.path(), evaluate);
+    let row = &crate::dock_run::run::rows(&folder.path().join("refined"))[0];
+    let expected: f64 = row["complex_irmsd"].parse().unwrap();
+    assert!((found["complexes"][0]["irmsd"].as_f64().unwrap() - expected).abs() < 0.02);
     let rows = crate::dock_run::run::rows(&folder.path().join("run"));
     let files = "run/top/rank_0001.pdb run/top/rank_0002.pdb run/top/rank_0003.pdb";
     let evaluate = format!("evaluate {files} native.pdb --native native.pdb -o models.csv");

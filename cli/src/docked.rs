@@ -271,7 +271,7 @@ fn complex_irmsd(docking: &Docking, top: &TopComplexes) -> Result<Option<Column>
         Ok(number(quality.irmsd))
     });
     Ok(Some(Column {
-        name: "complex_irmsd".to_owned(),
+        name: quality::OF_COMPLEXES[1].to_owned(),
         fields: irmsd.collect::<Result<_, Error>>()?,
     }))
 }

@@ -15,6 +15,7 @@ use crate::ensemble::joined::{JoinedRow, MemberRow, join};
 use crate::output::tables::fields::number;
 use crate::output::tables::poses::{PoseRow, PoseTable};
 use crate::output::tables::poses_reader::{column_place, no_value};
+use crate::output::tables::quality::OF_COMPLEXES;
 use crate::rank::cluster::RigidBody;
 
 /// Columns that name the conformations, receptor first.
@@ -143,13 +144,14 @@ struct Columns {
 }
 
 impl Columns {
-    /// All columns that any member has, each after the one that it follows there.
+    /// All columns that any member has, but those of its own complexes, each after the one that it follows there.
     fn of(members: &[DockedMember]) -> Self {
         let mut copied: Vec<String> = Vec::new();
         for member in members {
             let mut after = 0;
             let header = member.table.header.iter();
-            for name in header.filter(|name| !OWN.contains(name)) {
+            let is_copied = |name: &&str| !OWN.contains(name) && !OF_COMPLEXES.contains(name);
+            for name in header.filter(is_copied) {
                 match copied.iter().position(|known| known == name) {
                     Some(place) => after = place + 1,
                     None => {

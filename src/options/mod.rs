@@ -163,7 +163,7 @@ mod tests {
         crosslink=BS3 violation_weight=9 interface_receptor=bfactor interface_ligand=bfactor interface_weight=1 \
         membrane=-15,15 membrane_weight=2 peptidase_weight=0 rotations=17 fine_rotations=15deg fine_share=0.5 \
         precision=double engine=gpu per_rotation=1 poses=9 refine=0 symmetry=C3 cluster_radius=0 sharp=off \
-        no_cluster=true write_top=0 diagnostics=true no_report=true threads=7 memory=1GiB";
+        no_cluster=true exact=all write_top=0 raw=true diagnostics=true no_report=true threads=7 memory=1GiB";
 
     /// Options whose value is a file.
     const FILES: [&str; 4] = [

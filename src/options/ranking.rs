@@ -56,8 +56,8 @@ options! {
         write_top: usize = 10, "COUNT", NOT_NEGATIVE;
         /// Write complexes as they were searched, with the clashes that a search forgives.
         ///
-        /// By default their side chains are packed, and atoms that overlap are moved apart (`knotdock refine`). Ranks,
-        /// scores and poses.csv are of the poses that were searched either way.
+        /// By default their side chains are packed, and atoms that overlap are moved apart (`knotdock refine`), unless
+        /// --budget is given. Ranks and scores are of the poses that were searched either way.
         #[serde(default)]
         raw: bool = false, "", Flag;
         /// Add the diagnostic columns to poses.csv.

@@ -27,6 +27,7 @@ use crate::output::records::program::Program;
 use crate::output::run_contacts::RunContacts;
 use crate::output::tables::fields::Column;
 use crate::output::tables::poses::PoseRow;
+use crate::output::tables::quality::OF_COMPLEXES;
 use crate::output::tables::restraints;
 use crate::output::tables::run_table::{RunTable, pose_rows};
 use crate::pose_space::arrangement::Arrangement;
@@ -165,11 +166,11 @@ impl TopComplexes {
         }
     }
 
-    /// The column `complex_clashes`: pairs of heavy atoms that overlap by more than 0.5 Å in each complex that is written.
+    /// The first column of [`OF_COMPLEXES`].
     pub fn clashes(&self) -> Option<Column> {
         let clashes = self.poses.iter().map(|pose| pose.after.clashes.to_string());
         (!self.poses.is_empty()).then(|| Column {
-            name: "complex_clashes".to_owned(),
+            name: OF_COMPLEXES[0].to_owned(),
             fields: clashes.collect(),
         })
     }

@@ -109,7 +109,8 @@ fn minimisation_parts_what_clashes_and_keeps_shapes() {
     let refiner = Refiner::new(molecules.each_ref(), ALL).unwrap();
     for pose in [shifted(0.0), shifted(-1.0)] {
         let refined = refiner.refine(&pose, &mut PairList::default()).unwrap();
-        assert!(refined.before.clashes > 20 && refined.after.clashes <= 1);
+        let clashes = [refined.before.clashes, refined.after.clashes];
+        assert!(clashes[0] > 5 && clashes[1] <= 1, "{clashes:?}");
         // Packing turns side chains, so shapes are compared with those that it left.
         let repacker = Repacker::new(&molecules[0], &molecules[1], RepackOptions::default());
         let packed = repacker.repack(&refined.pose);

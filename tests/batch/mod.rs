@@ -73,7 +73,7 @@ fn each_pair_is_docked_as_by_itself() {
         ("charged_helices", second, 36, &rows[1]),
     ] {
         let alone = format!(
-            "dock in/{case}_receptor.pdb in/{case}_ligand.pdb --rotations {rotations} --poses 60 --write-top 1 \
+            "dock in/{case}_receptor.pdb in/{case}_ligand.pdb --rotations {rotations} --poses 60 --write-top 1 --raw \
              --threads 1 -o {case}"
         );
         succeed(folder.path(), alone.split(' '));

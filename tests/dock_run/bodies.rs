@@ -53,7 +53,7 @@ fn complexes_hold_the_receptor_as_it_was_and_the_ligand_in_its_place() {
     let folder = place();
     run(
         folder.path(),
-        "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 2 -o run --quiet",
+        "dock receptor.pdb ligand.pdb --rotations 40 --no-cluster --write-top 2 --raw -o run --quiet",
     );
     let run_folder = folder.path().join("run");
     run(folder.path(), "export run --rank 2,4-5 -o more --quiet");

@@ -1,7 +1,9 @@
 // Every kind of report opens without a fault, fits its window and is small.
 
 import assert from "node:assert/strict";
-import { statSync } from "node:fs";
+import { createHash } from "node:crypto";
+import { readFileSync, statSync } from "node:fs";
+import path from "node:path";
 import { after, test } from "node:test";
 import { end, open } from "./browser.mjs";
 import { reports } from "./reports.mjs";
@@ -47,6 +49,56 @@ test("a report without the library says what it lacks, and shows the rest", asyn
     assert.match(await page.locator("#scene-side").innerText(), /no three-dimensional view/);
     assert.equal(await page.locator("#scene").isVisible(), false);
     assert.ok(await page.locator("#funnel circle").count() > 100);
+  } finally {
+    await close();
+  }
+});
+
+const viewer = path.resolve(import.meta.dirname, "..");
+const library = readFileSync(path.join(viewer, "node_modules/3dmol/build/3Dmol-min.js"));
+
+test("the address and the checksum of the library are those of npm's package", async () => {
+  const { page, close } = await open(reports().bare);
+  try {
+    const { address, integrity } = await page.locator("#load-view").evaluate((button) => ({ ...button.dataset }));
+    const lock = JSON.parse(readFileSync(path.join(viewer, "package-lock.json"), "utf8"));
+    const { version } = lock.packages["node_modules/3dmol"];
+    assert.equal(address, `https://cdn.jsdelivr.net/npm/3dmol@${version}/build/3Dmol-min.js`);
+    assert.equal(integrity, `sha384-${createHash("sha384").update(library).digest("base64")}`);
+    const policy = await page.locator("meta[http-equiv]").getAttribute("content");
+    assert.deepEqual(policy.match(/https?:[^ ;]*/g), [address]);
+  } finally {
+    await close();
+  }
+});
+
+for (const [kind, body, works] of [["the library", library, true], ["another file", `${library} `, false]]) {
+  test(`a pressed button asks for one file, and ${kind} is ${works ? "shown" : "refused"}`, async () => {
+    const { page, requests, address, close } = await open(reports().bare);
+    try {
+      await page.route(/^https:/, (route) => route.fulfill({ body, contentType: "text/javascript", headers: { "access-control-allow-origin": "*" } }));
+      await page.click("#load-view");
+      if (works) {
+        await page.waitForSelector("#scene canvas");
+        assert.equal(await page.locator("#best button").count(), 10);
+      } else {
+        await page.waitForFunction(() => document.getElementById("no-view").textContent.includes("could not be loaded"));
+        assert.equal(await page.locator("#scene").isVisible(), false);
+      }
+      const [own, asked, ...others] = requests;
+      assert.deepEqual([own, others], [address, []]);
+      assert.match(asked, /^https:\/\/cdn\.jsdelivr\.net\/npm\/3dmol@/);
+    } finally {
+      await close();
+    }
+  });
+}
+
+test("a narrow window shows the view before the table", async () => {
+  const { page, close } = await open(reports().run, { width: 400 });
+  try {
+    const top = (id) => page.locator(id).evaluate((element) => element.getBoundingClientRect().top);
+    assert.ok(await top("#scene") < await top("#pose-table"));
   } finally {
     await close();
   }

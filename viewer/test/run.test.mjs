@@ -77,7 +77,7 @@ test("filters leave the rows that pass, and can be cleared", async () => {
   for (const score of await rows().locator("td:nth-child(2)").allInnerTexts()) assert.ok(Number(score) >= 2600, score);
   await shown.page.fill("#filter-score", "");
   await shown.page.selectOption("#filter-class", "acceptable");
-  for (const name of await rows().locator("td:last-child").allInnerTexts()) assert.ok(["acceptable", "medium", "high"].includes(name), name);
+  for (const name of await rows().locator("td:nth-child(8)").allInnerTexts()) assert.ok(["acceptable", "medium", "high"].includes(name), name);
   await shown.page.selectOption("#filter-class", "");
   // The catalytic histidine of trypsin: most good poses of an inhibitor touch it, and not all poses do.
   await shown.page.fill("#filter-residue", "A:57");
@@ -91,7 +91,7 @@ test("filters leave the rows that pass, and can be cleared", async () => {
 
 test("columns sort both ways, and all can be shown", async () => {
   const column = async () => (await rows().locator("td:nth-child(3)").allInnerTexts()).map(Number);
-  const size = shown.page.locator("#pose-table th button", { hasText: "poses" });
+  const size = shown.page.locator("#pose-table th button", { hasText: "cluster_size" });
   await size.click();
   const falling = await column();
   assert.deepEqual(falling, [...falling].sort((one, other) => other - one));
@@ -156,6 +156,26 @@ test("the saved complex is that of the run", async () => {
       assert.ok(Math.abs(one - other) < 0.0025, `${line}\n${written[place]}`);
     }
   });
+});
+
+test("the ten best clusters have small pictures, and are saved as the models of one file", async () => {
+  const pictures = shown.page.locator("#best button");
+  assert.equal(await pictures.count(), 10);
+  await pictures.nth(3).click();
+  assert.match(await text("#selected"), /^Selected: rank 4,/);
+  await rows().nth(0).click();
+  const [saved] = await Promise.all([shown.page.waitForEvent("download"), shown.page.click("#download-best")]);
+  const models = readFileSync(await saved.path(), "utf8").split(/^MODEL.*$/m).slice(1);
+  assert.equal(models.length, 10);
+  const atoms = models.map((model) => model.split("\n").filter((line) => /^(ATOM|HETATM)/.test(line)));
+  for (const model of atoms) assert.equal(model.length, atoms[0].length);
+  assert.equal(new Set(atoms.map((model) => model.at(-1))).size, 10);
+});
+
+test("the summary says what the best clusters touch, and what to do next", async () => {
+  const words = await text("#summary");
+  assert.match(words, /Of the best \d+ clusters, most touch A:57 HIS/);
+  assert.match(words, /knotdock dock .*--active-receptor/s);
 });
 
 test("every control has a name, and pictures say what they show", async () => {

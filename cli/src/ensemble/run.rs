@@ -127,8 +127,9 @@ impl Ensemble {
         let specs = self.conformations(member).map(|one| one.spec.clone());
         let bodies = Bodies::of(specs, &given.options)?;
         let mut request = Request::of(bodies, native.clone(), given.clone());
-        // Rows of all members are ordered together.
+        // Rows of all members are ordered together, and the ensemble's complexes are those that are looked at.
         request.options.ranking.exact = None;
+        request.options.output.raw = true;
         let place = (folder, *force);
         let mut docking = Docking::prepare(request, *wanted, place, Clock::start(), console)?;
         docking.shown = directory.join(MEMBERS).join(self.name(member));

@@ -15,6 +15,7 @@ use flate2::write::GzEncoder;
 
 use knotdock::output::files::folder::next_line;
 use knotdock::output::tables::fields::Column;
+use knotdock::output::tables::quality::OF_COMPLEXES;
 use knotdock::output::tables::run_table::RunTable;
 use knotdock::table_text::cells::TableWriter;
 
@@ -103,7 +104,16 @@ pub(super) fn copy_range(
 }
 
 /// Columns that some runs add to their tables, in this order. Each is empty where a pair has none of it.
-pub const WIDE_COLUMNS: [&str; 6] = ["restraints_met", "irmsd", "lrmsd", "fnat", "dockq", "capri"];
+pub const WIDE_COLUMNS: [&str; 8] = [
+    "restraints_met",
+    "irmsd",
+    "lrmsd",
+    "fnat",
+    "dockq",
+    "capri",
+    OF_COMPLEXES[0],
+    OF_COMPLEXES[1],
+];
 
 /// A pair's poses as a member of the file: each row is the pair's name and a row of its `poses.csv`.
 #[derive(Clone, Debug)]

@@ -3,6 +3,7 @@
 use crate::tables::field;
 use knotdock::output::tables::fields::Column;
 use knotdock::output::tables::poses::PoseTable;
+use knotdock::output::tables::quality::OF_COMPLEXES;
 use knotdock::rank::ranking::RankedPose;
 
 /// Rows of the table of best clusters.
@@ -13,6 +14,11 @@ pub const BEST: usize = 10;
 ///
 /// `ranking` is best first; of each cluster its first pose is shown, under the rank it has in `ranking`.
 pub fn best_clusters(ranking: &[RankedPose], appended: &[Column]) -> String {
+    // Those of complexes would make lines longer than most terminals show.
+    let shown = appended
+        .iter()
+        .filter(|column| !OF_COMPLEXES.contains(&column.name.as_str()));
+    let appended: Vec<&Column> = shown.collect();
     let names = appended.iter().map(|column| format!("|{}", column.name));
     let header =
         "rank|score|cluster_size|pose_score|z_score".to_owned() + &names.collect::<String>();
@@ -152,15 +158,16 @@ mod tests {
             fields: ["3", "0", "1", "2", "3", "0"].map(str::to_owned).to_vec(),
         };
         assert!(
-            best_clusters(&ranking, &[met]).contains("   4    6.0     2         6.0             2")
+            best_clusters(&ranking, &[met])
+                .contains("   4    6.0             2         6.0             2")
         );
         assert_eq!(
             best_clusters(&ranking, &[irmsd]),
-            "  rank  score  size  pose score  z-score  irmsd\n\
-             \x20    1    9.0     2         9.0            1.23\n\
-             \x20    4    6.0     2         6.0            3.50\n\
-             \x20    3    7.0               7.0\n\
-             \x20    5    5.0               5.0"
+            "  rank  score  cluster_size  pose_score  z_score  irmsd\n\
+             \x20    1    9.0             2         9.0            1.23\n\
+             \x20    4    6.0             2         6.0            3.50\n\
+             \x20    3    7.0                       7.0\n\
+             \x20    5    5.0                       5.0"
         );
     }
 
@@ -176,9 +183,9 @@ mod tests {
         let ranking = [in_company(8.0, 1, 11.0), in_company(9.0, 2, 10.0)];
         assert_eq!(
             best_clusters(&ranking, &[]),
-            "  rank  score  size  pose score  z-score\n\
-             \x20    1   11.0     2         8.0\n\
-             \x20    2   10.0     2         9.0"
+            "  rank  score  cluster_size  pose_score  z_score\n\
+             \x20    1   11.0             2         8.0\n\
+             \x20    2   10.0             2         9.0"
         );
     }
 }

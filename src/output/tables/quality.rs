@@ -6,6 +6,10 @@ use crate::evaluate::{Criterion, PoseQuality};
 
 use crate::output::tables::fields::{Column, number};
 
+/// Columns of the complexes that a run writes: pairs of heavy atoms that overlap by more than 0.5 Å, and the interface RMSD in
+/// Å. They are of this run's complexes alone.
+pub const OF_COMPLEXES: [&str; 2] = ["complex_clashes", "complex_irmsd"];
+
 /// Columns `irmsd` and `lrmsd` in Å, `fnat` and `dockq` from 0 to 1, and `capri`, the class's name; empty for a pose that
 /// could not be measured.
 pub fn columns(qualities: &[Option<PoseQuality>]) -> Vec<Column> {

@@ -35,7 +35,7 @@ function drawDistribution(data, column, row) {
 
 /** The axes that a funnel may have: distances from the known complex, and from the selected pose. */
 function funnelAxes(data, column) {
-  const known = [["irmsd", "irmsd: interface RMSD from the known complex, Å"], ["lrmsd", "lrmsd: ligand RMSD from the known complex, Å"], ["dockq", "dockq"]];
+  const known = [["irmsd", "irmsd from the known complex, Å"], ["lrmsd", "lrmsd from the known complex, Å"], ["dockq", "dockq"]];
   const own = data.placed[0]?.length > 0 ? [["selected", "RMSD from the selected pose, Å"]] : [];
   return [...known.filter(([name]) => column(name) >= 0), ...own];
 }

@@ -100,8 +100,8 @@ function drawBest(scene, data, column, choose) {
   byId("best").replaceChildren(...rows.map((row) => {
     scene.show(row);
     const rank = data.rows[row][column("rank")];
-    const picture = make("img", { src: scene.picture(), alt: "" });
-    return make("button", { type: "button", "aria-label": `Rank ${rank}`, click: () => choose(row) }, picture, String(rank));
+    const picture = make("img", { src: scene.picture(), alt: `Rank ${rank}` });
+    return make("button", { type: "button", click: () => choose(row) }, picture, make("span", { "aria-hidden": "true" }, String(rank)));
   }));
 }
 
