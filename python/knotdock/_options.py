@@ -206,8 +206,9 @@ class DockOptions(TypedDict, total=False):
 
     rotations: float | str
     """Rotations of the ligand, spread evenly over all: their number, or the angle between them, such as 15deg.
-    An angle stands for a number, 3600 (15/D)^3, so that 6deg gives 56,250. With --symmetry the option counts
-    axes, by default 900 over half a sphere or 90 across a ring's own. [default: 3600]"""
+    An angle stands for a number, 3600 (15/D)^3, so that 6deg gives 56,250. By default a small ligand has fewer
+    than 3600: 3600 (R/14)^3 if its radius of gyration R is below 14 Å, 1000 at the least. With --symmetry the
+    option counts axes, by default 900 over half a sphere or 90 across a ring's own. [default: 3600]"""
 
     fine_rotations: str | float | Sequence[object]
     """Search again, among this many rotations, about the best: a number or an angle. Their peaks take the place
@@ -255,8 +256,19 @@ class DockOptions(TypedDict, total=False):
     """List every pose, not the best one of each cluster. Refined poses within a step of the search of a better
     one are left out."""
 
+    exact: float | str
+    """Rows of poses.csv with exact scores: the best COUNT, or all. An exact score costs as much as a rotation
+    of the search. Rows come in the order of the fast path's scores, whose error each run measures; those beyond
+    COUNT have no exact columns. With --no-cluster, and in ensembles, all rows have them and are ordered by
+    them. [default: 200]"""
+
     write_top: float | str
     """Complexes to write to top/. [default: 10]"""
+
+    raw: bool
+    """Write complexes as they were searched, with the clashes that a search forgives. By default their side
+    chains are packed, and atoms that overlap are moved apart (`knotdock refine`), unless --budget is given.
+    Ranks and scores are of the poses that were searched either way."""
 
     diagnostics: bool
     """Add the diagnostic columns to poses.csv."""

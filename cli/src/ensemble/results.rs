@@ -138,7 +138,7 @@ impl Ensemble {
 
     fn report(&self, joint: &JointTable, console: Console) {
         console.say(format!(
-            "\n{}\n\nAll {} together (rec and lig are the conformations): {} in {:.1} s",
+            "\n{}\n\nAll {} together: {} in {:.1} s",
             best_rows(&joint.table, joint.firsts()),
             counted(self.members().len(), "run"),
             counted(joint.clusters, "cluster"),
