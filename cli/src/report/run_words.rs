@@ -112,7 +112,7 @@ const NAMED: usize = 5;
 fn touched(report: &RunReport) -> Option<String> {
     let contacts = report.contacts?;
     let sides = contacts.shares().map(|mut shares| {
-        shares.sort_by(|a, b| b.clusters.cmp(&a.clusters));
+        shares.sort_by_key(|share| std::cmp::Reverse(share.clusters));
         let named = shares.iter().filter(|share| share.clusters > 0).take(NAMED);
         let words = named.map(|share| {
             let ResidueName {
