@@ -101,17 +101,17 @@ fn molecules_out_of_reach_stay() {
     assert!(packing.moved == 0 && packing.exact && !refined.has_moved_atoms());
 }
 
-/// The unbound molecules clash in the place of the bound ones. Refinement leaves at most a fiftieth of the clashes, and atoms
+/// The unbound molecules clash in the place of the bound ones. Refinement leaves at most a twentieth of the clashes, and atoms
 /// that move keep their bonds, their hands and flat peptide bonds.
 #[test]
 fn minimisation_parts_what_clashes_and_keeps_shapes() {
     let molecules = ["receptor_unbound", "ligand_unbound"].map(example);
     let refiner = Refiner::new(molecules.each_ref(), ALL).unwrap();
-    for pose in [shifted(0.0), shifted(-1.0)] {
+    for pose in [shifted(0.0), shifted(0.7)] {
         let refined = refiner.refine(&pose, &mut PairList::default()).unwrap();
         let clashes = [refined.before.clashes, refined.after.clashes];
         assert!(
-            clashes[0] > 5 && 50 * clashes[1] <= clashes[0],
+            clashes[0] > 5 && 20 * clashes[1] <= clashes[0],
             "{clashes:?}"
         );
         // Packing turns side chains, so shapes are compared with those that it left.
