@@ -42,7 +42,7 @@ const FLAT: f64 = 1.42;
 const APART: f64 = 20.0;
 /// Stiffness of the restraint to the place at the start, RT/Å².
 const PLACE: f64 = 0.1;
-/// Overlap across the interface that is left, Å. With the force that keeps it, no heavy atoms are nearer than some 2.5 Å.
+/// Overlap across the interface that has no energy, Å; springs that hold atoms back leave more.
 const LEFT: f64 = 0.15;
 
 /// Largest force of a minimum, RT/Å: atoms in contact are then nearer by 0.01 Å.
