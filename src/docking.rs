@@ -40,9 +40,10 @@ use crate::output::files::staging::Staging;
 use crate::output::records::input_record::InputRecord;
 use crate::output::records::manifest::{InputEntry, Inputs};
 use crate::output::run_contacts::{MAX_ROWS, RunContacts};
-use crate::output::run_folder::{Bodies, Clock, FinishedRun, TopComplexes};
+use crate::output::run_folder::{Bodies, Clock, FinishedRun};
 use crate::output::tables::restraints;
 use crate::output::tables::run_table::pose_rows;
+use crate::output::top_complexes::TopComplexes;
 use crate::progress::{NoProgress, Progress};
 use crate::rank::ranking::RankedPose;
 use crate::threads;
@@ -166,10 +167,8 @@ impl Run {
         })?;
         let molecules = self.molecules.each_ref();
         let kind = (molecules, self.options.search.symmetry.into());
-        let options = &self.options;
-        let options = options.changed(|options| options.output.write_top = 1);
         let rows = std::slice::from_ref(row);
-        let top = TopComplexes::new(Bodies::Molecules(molecules), rows, &options)?;
+        let top = TopComplexes::new(Bodies::Molecules(molecules), rows, &self.options)?;
         match PosedPair::of(kind, (rows, top.refined())).first() {
             Some(pair) => complex(pair),
             None => unreachable!("a row gives a pair"),
@@ -184,7 +183,7 @@ impl Run {
         let rows = pose_rows(&self.outcome.poses);
         let bodies = Bodies::Molecules(self.molecules.each_ref());
         let made = threads::on(self.options.machine.thread_count(), || {
-            TopComplexes::new(bodies, &rows, &self.options)
+            TopComplexes::new(bodies, self.options.output.top(&rows), &self.options)
         })??;
         Ok(self.top.get_or_init(|| made))
     }

@@ -26,10 +26,11 @@ use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::RUN;
 use knotdock::output::files::seal::REPORT;
 use knotdock::output::files::staging::{Stage, Staging};
-use knotdock::output::run_folder::{FinishedRun, TopComplexes};
+use knotdock::output::run_folder::FinishedRun;
 use knotdock::output::tables::fields::{Column, number};
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
 use knotdock::output::tables::{quality, restraints};
+use knotdock::output::top_complexes::TopComplexes;
 use knotdock_structures::Error;
 use rayon::prelude::*;
 
@@ -108,7 +109,8 @@ impl Docked {
         }
         let (bodies, options) = (docking.request.bodies.placed(), &docking.request.options);
         let rows = pose_rows(&outcome.poses);
-        let (top, timing) = timed("complexes", || TopComplexes::new(bodies, &rows, options));
+        let first = options.output.top(&rows);
+        let (top, timing) = timed("complexes", || TopComplexes::new(bodies, first, options));
         let top = top?;
         outcome.timing.push(timing);
         quality.extend(top.clashes());
@@ -152,9 +154,7 @@ impl Docked {
     pub fn export_top(&self, folder: &Path) -> Result<(), Error> {
         let request = &self.docking.request;
         let rows = pose_rows(&self.outcome.poses);
-        let top = rows
-            .get(..request.options.output.write_top)
-            .unwrap_or(&rows);
+        let top = request.options.output.top(&rows);
         let addition = Addition::open(folder, None)?;
         let place = (addition.stage().folder(), None);
         let placed = request.bodies.placed();

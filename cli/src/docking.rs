@@ -164,9 +164,9 @@ fn plan_within(
     let rotations = request.options.search.rotations;
     // A first plan fills in the defaults of meshes; its rotations are not used.
     request.options.search.rotations = 4;
-    // The clock ends the search of an even set.
-    // Its time goes into the search.
+    // A budget is for the search.
     request.options.output.raw |= wanted.budget.is_some();
+    // The clock ends the search of an even set.
     request.given.defaults.rotations |= wanted.budget.is_some();
     request.given.fixes_gap |= wanted.budget.is_some();
     let first = request.plan(console)?;

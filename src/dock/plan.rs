@@ -9,6 +9,7 @@ use crate::pose_space::PoseSpace;
 use crate::priors::active_residues::{ActiveResidues, AssumedSite};
 use crate::priors::flexible_regions::FlexibleRegions;
 use crate::priors::restrained::Restrained;
+use crate::rank::ranking::RowChoice;
 use crate::rank::rescoring::Rescoring;
 use crate::rank::sharp::SharpInputs;
 use crate::search::allowed::SearchRestraints;
@@ -159,11 +160,15 @@ pub fn plan_scene(scene: Scene, options: &DockOptions) -> Result<DockPlan, Error
 }
 
 impl DockPlan {
-    /// Rows that get exact scores; all if `None`. Poses of rings score with copies beyond the neighbours, of which the
-    /// search knows nothing, so their order needs exact scores.
-    pub(crate) fn exact_rows(&self) -> Option<usize> {
-        let is_all = self.options.ranking.no_cluster || self.options.search.symmetry.is_some();
-        self.options.ranking.exact.filter(|_| !is_all)
+    /// The rows of the table, with the error by which the fast path may misjudge a pose. Poses of rings score with copies
+    /// beyond the neighbours, of which the search knows nothing, so their order needs exact scores.
+    pub(crate) fn row_choice(&self, margin: f64) -> RowChoice {
+        let ranking = &self.options.ranking;
+        match ranking.exact {
+            _ if ranking.no_cluster => RowChoice::EveryPose,
+            Some(exact) if self.options.search.symmetry.is_none() => RowChoice::BestExact(exact),
+            _ => RowChoice::Clusters { margin },
+        }
     }
 
     /// The knots that are docked, of receptor and ligand.

@@ -11,7 +11,7 @@ use crate::pose_space::rotations::RotationGroup;
 use crate::progress::{NoProgress, Progress};
 use crate::rank::candidates::{Candidate, candidates, clusters_of, deduplicated, merge};
 use crate::rank::cluster::RigidBody;
-use crate::rank::ranking::{PoseScorer, Ranking, RowChoice, report};
+use crate::rank::ranking::{PoseScorer, Ranking, report};
 use crate::rank::sharp::{optima, settle};
 use crate::rank::time_left::{poses_in_time, rescoring_seconds};
 use crate::search::coarse_to_fine::{FineSearched, search_finer};
@@ -241,11 +241,7 @@ impl<'a> Searched<'a> {
             pose_scorer,
             &candidates,
             (&clusters, &distinct),
-            RowChoice {
-                every_pose: plan.options.ranking.no_cluster,
-                exact: plan.exact_rows(),
-                margin: 2.0 * plan.options.kernel.tolerance * best_peak.abs(),
-            },
+            plan.row_choice(2.0 * plan.options.kernel.tolerance * best_peak.abs()),
             progress,
         );
         let error = check.error(plan, &found.peaks, &ranking);

@@ -15,6 +15,7 @@
 //! Add a line, and the code that uses it. The field, the option on the command line and the key in files have the same
 //! name. The heading of the list is the name of its table in files.
 
+mod by_input;
 pub mod definition;
 pub mod effect_choice;
 pub mod file;

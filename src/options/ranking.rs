@@ -31,6 +31,18 @@ options! {
     }
 }
 
+impl OutputOptions {
+    /// The first of some rows, which are written as complexes.
+    pub fn top<'a, T>(&self, rows: &'a [T]) -> &'a [T] {
+        rows.get(..self.write_top).unwrap_or(rows)
+    }
+}
+
+/// Value of records that are older than the option: their complexes are as they were searched.
+fn before_refined_complexes() -> bool {
+    true
+}
+
 /// Value of records that are older than the option.
 fn before_sharp_fits() -> SharpChoice {
     SharpChoice::Off
@@ -58,7 +70,7 @@ options! {
         ///
         /// By default their side chains are packed, and atoms that overlap are moved apart (`knotdock refine`), unless
         /// --budget is given. Ranks and scores are of the poses that were searched either way.
-        #[serde(default)]
+        #[serde(default = "before_refined_complexes")]
         raw: bool = false, "", Flag;
         /// Add the diagnostic columns to poses.csv.
         diagnostics: bool = false, "", Flag;

@@ -1,14 +1,9 @@
 //! Refusal of options out of range, and of options that do not go together.
 
 use knotdock_structures::Error;
-use knotdock_structures::molecule::Molecule;
-use nalgebra::Vector3;
 
 use super::definition::{Definition, name_of};
-use super::{
-    AXES, AXES_ACROSS, DockOptions, EngineChoice, Precision, SearchOptions, definitions,
-    option_named,
-};
+use super::{DockOptions, EngineChoice, Precision, SearchOptions, definitions, option_named};
 
 /// The refusal of an option by name; `bound` states the demand on it.
 pub(crate) fn refused(name: &str, value: &str, bound: &str) -> Error {
@@ -24,73 +19,7 @@ pub(crate) fn left_out(name: &str, value: &str, context: &str) -> Error {
     refused(name, value, &format!("left out {context}")).help("leave the option out")
 }
 
-/// Radius of gyration in Å below which a ligand needs fewer rotations than the default.
-const SMALL: f64 = 14.0;
-/// Rotations of the smallest ligands.
-const FEWEST_ROTATIONS: usize = 1000;
-
-/// Radius of gyration of a molecule's heavy atoms, Å.
-fn radius_of_gyration(molecule: &Molecule) -> f64 {
-    let heavy = molecule.atoms.iter().filter(|atom| !atom.is_hydrogen());
-    let places: Vec<Vector3<f64>> = heavy.map(|atom| Vector3::from(atom.position)).collect();
-    let count = places.len().max(1) as f64;
-    let middle = places.iter().sum::<Vector3<f64>>() / count;
-    let squares = places.iter().map(|place| (place - middle).norm_squared());
-    (squares.sum::<f64>() / count).sqrt()
-}
-
 impl DockOptions {
-    /// The options of a search for rings: residues are alike on both sides, and rotations are axes, of which there
-    /// are fewer unless their number is given.
-    #[must_use]
-    pub fn of_rings(mut self, rotations_given: bool) -> Self {
-        let Some(symmetry) = self.search.symmetry else {
-            return self;
-        };
-        if !rotations_given {
-            self.search.rotations = match symmetry.folds() {
-                Some(_) => AXES_ACROSS,
-                None => AXES,
-            };
-        }
-        // Other residues of the ligand are refused by the check.
-        let restraints = &mut self.restraints;
-        for (receptor, ligand) in [
-            (&restraints.block_receptor, &mut restraints.block_ligand),
-            (&restraints.active_receptor, &mut restraints.active_ligand),
-        ] {
-            if ligand.is_none() {
-                ligand.clone_from(receptor);
-            }
-        }
-        if restraints.interface_ligand.is_none() {
-            restraints
-                .interface_ligand
-                .clone_from(&restraints.interface_receptor);
-        }
-        self
-    }
-
-    /// The options of a search with a ligand: fewer rotations of a small one, unless `is_given` names an option that
-    /// decides on them.
-    ///
-    /// Their number falls with the cube of the radius of gyration, so that neighbouring rotations move a ligand's
-    /// surface by one length, whatever its size (docs/research/defaults.md).
-    #[must_use]
-    pub fn of_ligand(mut self, ligand: &Molecule, is_given: impl Fn(&str) -> bool) -> Self {
-        if ["rotations", "fine_rotations", "symmetry"]
-            .into_iter()
-            .any(is_given)
-        {
-            return self;
-        }
-        let share = (radius_of_gyration(ligand) / SMALL).powi(3);
-        let most = self.search.rotations;
-        let count = (most as f64 * share).round() as usize;
-        self.search.rotations = count.clamp(FEWEST_ROTATIONS.min(most), most);
-        self
-    }
-
     /// Refuses values out of range.
     pub(crate) fn check_ranges(&self) -> Result<(), Error> {
         definitions()

@@ -28,3 +28,4 @@ pub mod records;
 pub mod run_contacts;
 pub mod run_folder;
 pub mod tables;
+pub mod top_complexes;

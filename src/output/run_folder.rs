@@ -4,7 +4,6 @@ use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Instant, SystemTime, UNIX_EPOCH};
 
-use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::{ChainMap, Format, Molecule};
 use serde_json::Value;
@@ -27,11 +26,11 @@ use crate::output::records::program::Program;
 use crate::output::run_contacts::RunContacts;
 use crate::output::tables::fields::Column;
 use crate::output::tables::poses::PoseRow;
-use crate::output::tables::quality::OF_COMPLEXES;
 use crate::output::tables::restraints;
 use crate::output::tables::run_table::{RunTable, pose_rows};
+use crate::output::top_complexes::TopComplexes;
 use crate::pose_space::arrangement::Arrangement;
-use crate::refine::{RefineOptions, Refined, Refiner};
+use crate::refine::Refined;
 use crate::threads;
 
 /// The start of a run.
@@ -127,55 +126,6 @@ impl Bodies<'_> {
     }
 }
 
-/// The complexes of a run's first rows, as they are written to `top/`: refined, or as they were searched.
-#[derive(Clone, Debug, Default)]
-pub struct TopComplexes {
-    /// The poses, refined or as they were searched; none of rings and meshes.
-    poses: Vec<Refined>,
-    is_raw: bool,
-}
-
-impl TopComplexes {
-    /// The complexes of a run's rows. Of rings and solids there are none, for these are written as they were searched.
-    pub fn new(bodies: Bodies, rows: &[PoseRow], options: &DockOptions) -> Result<Self, Error> {
-        let Bodies::Molecules(molecules) = bodies else {
-            return Ok(Self::default());
-        };
-        if Arrangement::from(options.search.symmetry).is_ring() {
-            return Ok(Self::default());
-        }
-        let (is_raw, ph) = (options.output.raw, options.terms.ph);
-        let refining = match is_raw {
-            true => RefineOptions::none(ph),
-            false => RefineOptions::usual(ph),
-        };
-        let top = rows.get(..options.output.write_top).unwrap_or(rows);
-        if top.is_empty() {
-            return Ok(Self::default());
-        }
-        let top: Vec<Pose> = top.iter().map(|row| row.pose).collect();
-        let poses = Refiner::new(molecules, refining)?.all(&top)?;
-        Ok(Self { poses, is_raw })
-    }
-
-    /// What the first rows are refined to; none if they are written as they were searched.
-    pub fn refined(&self) -> &[Refined] {
-        match self.is_raw {
-            true => &[],
-            false => &self.poses,
-        }
-    }
-
-    /// The first column of [`OF_COMPLEXES`].
-    pub fn clashes(&self) -> Option<Column> {
-        let clashes = self.poses.iter().map(|pose| pose.after.clashes.to_string());
-        (!self.poses.is_empty()).then(|| Column {
-            name: OF_COMPLEXES[0].to_owned(),
-            fields: clashes.collect(),
-        })
-    }
-}
-
 /// A finished run as it is written.
 pub struct FinishedRun<'a> {
     /// The bodies.
@@ -233,7 +183,7 @@ impl<'a> FinishedRun<'a> {
         }
         staging.write("poses.csv", |file| self.table().write_to(file))?;
         let rows = pose_rows(&outcome.poses);
-        let top = rows.get(..options.output.write_top).unwrap_or(&rows);
+        let top = options.output.top(&rows);
         let arrangement = options.search.symmetry.into();
         let folder = staging.folder().join("top");
         let complexes = (top, self.top.refined());

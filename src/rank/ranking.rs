@@ -94,16 +94,16 @@ pub(crate) struct Ranking {
 /// Most rows that a thread takes at once: refined ones take longer and come first.
 const ROWS_TOGETHER: usize = 8;
 
-/// Which rows a table has, and which of them are exact.
+/// The rows of a table, and which of them are exact.
 #[derive(Clone, Copy)]
-pub(crate) struct RowChoice {
-    /// Whether every distinct pose is a row, and not the best of each cluster.
-    pub every_pose: bool,
-    /// Rows with exact scores; all if `None`, and then these order the rows. Otherwise the scores of the fast path do.
-    pub exact: Option<usize>,
-    /// Error by which the fast path may misjudge which pose of a cluster is best: all that come so near to its centre are
-    /// scored, if all rows are exact.
-    pub margin: f64,
+pub(crate) enum RowChoice {
+    /// Every distinct pose, exact, in the order of exact scores.
+    EveryPose,
+    /// The best pose of each cluster, exact, in the order of exact scores. The fast path may misjudge by `margin` which
+    /// pose of a cluster is best, so all that come so near to its centre are scored.
+    Clusters { margin: f64 },
+    /// The best pose of each cluster by the fast path, in its order; the first ones are exact.
+    BestExact(usize),
 }
 
 /// The rows: every distinct pose by its score, or the best of each cluster by the cluster's score.
@@ -116,7 +116,7 @@ pub(crate) fn report(
     choice: RowChoice,
     progress: &dyn Progress,
 ) -> Ranking {
-    let every_pose = choice.every_pose;
+    let every_pose = matches!(choice, RowChoice::EveryPose);
     let count = clusters.iter().max().map_or(0, |last| last + 1);
     let mut sizes = vec![0; count];
     let mut weights = vec![0.0; count];
@@ -133,38 +133,39 @@ pub(crate) fn report(
         centres[cluster] = centres[cluster].max(candidate.score);
         // Scores against the centre's, so that nothing overflows.
         weights[cluster] += ((candidate.score - centres[cluster]) / temperature).exp();
-        let may_be_best = match choice.exact {
-            None => candidate.score >= centres[cluster] - choice.margin,
-            Some(_) => sizes[cluster] == 1,
+        let may_be_row = match choice {
+            RowChoice::EveryPose => true,
+            RowChoice::Clusters { margin } => candidate.score >= centres[cluster] - margin,
+            RowChoice::BestExact(_) => sizes[cluster] == 1,
         };
-        if is_distinct && (every_pose || may_be_best) {
+        if is_distinct && may_be_row {
             wanted.push((candidate, cluster));
         }
     }
     let with_company = |score: f64, cluster: usize| score + temperature * weights[cluster].ln();
-    if let Some(exact) = choice.exact {
-        // By what orders the rows, so that the first rows are the exact ones.
-        let score = |&(candidate, cluster): &(&Candidate, usize)| match every_pose {
-            true => candidate.score,
-            false => with_company(candidate.score, cluster),
-        };
-        wanted.sort_by(|a, b| score(b).total_cmp(&score(a)));
-        progress.stage("score", exact.min(wanted.len()) as u64);
-    } else {
-        progress.stage("score", wanted.len() as u64);
-    }
+    let exact = match choice {
+        RowChoice::BestExact(exact) => {
+            let score = |&(candidate, cluster): &(&Candidate, usize)| {
+                with_company(candidate.score, cluster)
+            };
+            wanted.sort_by(|a, b| score(b).total_cmp(&score(a)));
+            Some(exact)
+        }
+        _ => None,
+    };
+    progress.stage("score", wanted.len() as u64);
     // Each row, its cluster, and the score that orders it.
     let mut rows: Vec<(RankedPose, usize, f64)> = Vec::new();
     let scored = |(place, (candidate, cluster)): (usize, (&Candidate, usize))| {
-        // Whether a refined pose stands is decided by exact scores.
-        let is_exact = choice.exact.is_none_or(|exact| place < exact) || candidate.refined;
-        if !is_exact {
-            return (candidate.unscored(), cluster, candidate.score);
-        }
-        let row = candidate.reported(pose_scorer);
+        // Exact scores decide whether a refined pose stands.
+        let is_exact = exact.is_none_or(|exact| place < exact) || candidate.refined;
+        let row = match is_exact {
+            true => candidate.reported(pose_scorer),
+            false => candidate.unscored(),
+        };
         progress.advance(1);
-        let exact = row.pose_score.filter(|_| choice.exact.is_none());
-        (row, cluster, exact.unwrap_or(candidate.score))
+        let by_exact = row.pose_score.filter(|_| exact.is_none());
+        (row, cluster, by_exact.unwrap_or(candidate.score))
     };
     let wanted = wanted.into_par_iter().enumerate();
     let wanted = wanted.with_max_len(ROWS_TOGETHER);
@@ -338,11 +339,17 @@ mod tests {
         ExactScorer::new(&kernel, &ball, &ball).unwrap().into()
     }
 
-    const ALL: RowChoice = RowChoice {
-        every_pose: true,
-        exact: None,
-        margin: 0.0,
-    };
+    /// A scorer of rows by shape alone.
+    fn rows_by(scorer: &ExactSum) -> PoseScorer<'_> {
+        PoseScorer {
+            scorer,
+            rescorer: None,
+            on: [true, false, false, false],
+            space: &PoseSpace::Free,
+            cluster_temperature: LengthUnit::Angstrom.cluster_temperature(),
+            diagnostics: false,
+        }
+    }
 
     fn at(x: f64) -> Pose {
         Pose {
@@ -390,16 +397,8 @@ mod tests {
             let refined = Some((at(to), peak.score + 1.0));
             let placed = RefinedPose::best_of((at(from), peak.score), refined);
             let candidates = candidates(&[peak], &[placed], &[], None);
-            let pose_scorer = PoseScorer {
-                scorer: &scorer,
-                rescorer: None,
-                on: [true, false, false, false],
-                space: &PoseSpace::Free,
-                cluster_temperature: 0.1,
-                diagnostics: false,
-            };
-            let ranking = report(pose_scorer, &candidates, (&[0], &[true]), ALL, &NoProgress);
-            ranking.poses[0].clone()
+            let (one, choice) = ((&[0][..], &[true][..]), RowChoice::EveryPose);
+            report(rows_by(&scorer), &candidates, one, choice, &NoProgress).poses[0].clone()
         };
         let undone = ascent(touching, overlapping);
         assert!(!undone.refined && undone.pose == at(touching));
@@ -425,22 +424,10 @@ mod tests {
         let placed = |x: &f64| RefinedPose::best_of((at(*x), off(*x)), None);
         let placed: Vec<RefinedPose> = places.iter().map(placed).collect();
         let candidates = candidates(&peaks, &placed, &[], None);
-        let pose_scorer = PoseScorer {
-            scorer: &scorer,
-            rescorer: None,
-            on: [true, false, false, false],
-            space: &PoseSpace::Free,
-            cluster_temperature: 0.1,
-            diagnostics: false,
-        };
         let clusters: Vec<usize> = (0..12).collect();
-        let choice = RowChoice {
-            every_pose: false,
-            exact: Some(5),
-            margin: 0.0,
-        };
         let clusters = (&clusters[..], &[true; 12][..]);
-        let rows = report(pose_scorer, &candidates, clusters, choice, &NoProgress).poses;
+        let choice = RowChoice::BestExact(5);
+        let rows = report(rows_by(&scorer), &candidates, clusters, choice, &NoProgress).poses;
         assert_eq!(rows.len(), 12);
         for (place, row) in rows.iter().enumerate() {
             let x = row.pose.translation.x;
@@ -485,18 +472,11 @@ mod tests {
         let candidates = candidates(&peaks, &placed, &[], None);
         let first = |unit: LengthUnit| {
             let pose_scorer = PoseScorer {
-                scorer: &scorer,
-                rescorer: None,
-                on: [true, false, false, false],
-                space: &PoseSpace::Free,
                 cluster_temperature: unit.cluster_temperature(),
-                diagnostics: false,
+                ..rows_by(&scorer)
             };
             let clusters = (&[0, 1, 1, 1, 1, 1][..], &[true; 6][..]);
-            let choice = RowChoice {
-                every_pose: false,
-                ..ALL
-            };
+            let choice = RowChoice::Clusters { margin: 0.0 };
             let ranking = report(pose_scorer, &candidates, clusters, choice, &NoProgress);
             let first = &ranking.poses[0];
             (first.cluster_size, first.cluster_score == first.pose_score)

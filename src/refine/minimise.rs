@@ -77,7 +77,7 @@ fn edges(atoms: [usize; 4], places: &[Vector3<f64>]) -> [Vector3<f64>; 3] {
     [1, 2, 3].map(|end| places[atoms[end]] - places[atoms[0]])
 }
 
-/// What keeps the shape of molecules, and what keeps them apart.
+/// Terms of the energy: springs and corners keep shapes, contacts push.
 #[derive(Default)]
 struct Terms {
     springs: Vec<PairOf>,
@@ -85,11 +85,41 @@ struct Terms {
     contacts: Vec<PairOf>,
 }
 
+/// The atoms that each atom of a molecule is bonded to, by its file. Packing keeps bonds, and may bring other atoms as near.
+pub(super) fn bonds(molecule: &Molecule) -> Vec<Vec<usize>> {
+    let atoms = &molecule.atoms;
+    // An offset of the whole costs no cells.
+    let origin = Vector3::from(atoms.first().map_or([0.0; 3], |atom| atom.position));
+    let place = |atom: &Atom| -> [f64; 3] { (Vector3::from(atom.position) - origin).into() };
+    let widest = atoms.iter().map(|atom| atom.radius).fold(0.1, f64::max);
+    let members = atoms.iter().enumerate().map(|(item, atom)| Member {
+        position: place(atom),
+        item,
+    });
+    let cells = CellList::new(members.collect(), 2.0 * BONDED * widest);
+    let of_atom = |(index, atom): (usize, &Atom)| {
+        let mut bonded = Vec::new();
+        cells.visit_within(
+            place(atom),
+            BONDED * (atom.radius + widest),
+            |&other, square| {
+                let reach = BONDED * (atom.radius + atoms[other].radius);
+                if other != index && square < reach * reach {
+                    bonded.push(other);
+                }
+            },
+        );
+        bonded
+    };
+    atoms.iter().enumerate().map(of_atom).collect()
+}
+
 /// Receptor and ligand, each in its own frame, with the overlaps of a pose relieved; `None` if nothing overlaps. `polar`
-/// are their atoms' roles in hydrogen bonds.
+/// are their atoms' roles in hydrogen bonds, and `bonds` are those of [`bonds`].
 pub(super) fn minimised(
     molecules: [&Molecule; 2],
     polar: [&[PolarAtom]; 2],
+    bonds: [&[Vec<usize>]; 2],
     pose: &Pose,
 ) -> Option<[Molecule; 2]> {
     let atoms: Vec<&Atom> = molecules.iter().flat_map(|one| &one.atoms).collect();
@@ -143,18 +173,12 @@ pub(super) fn minimised(
         atoms[atom].is_metal() || binds()
     });
 
-    let bonded: Vec<Vec<usize>> = (0..atoms.len())
-        .map(|atom| {
-            let radius = atoms[atom].radius;
-            let is_bonded = |&(other, distance): &(usize, f64)| {
-                !across(atom, other) && distance < BONDED * (radius + atoms[other].radius)
-            };
-            let found = near(atom, 2.0 * BONDED * WIDEST)
-                .into_iter()
-                .filter(is_bonded);
-            found.map(|(other, _)| other).collect()
-        })
-        .collect();
+    let [of_receptor, of_ligand] = bonds;
+    let of_ligand = of_ligand.iter().map(|bonded| {
+        let shifted = bonded.iter().map(|other| first_of_ligand + other);
+        shifted.collect()
+    });
+    let bonded: Vec<Vec<usize>> = of_receptor.iter().cloned().chain(of_ligand).collect();
     let mut terms = Terms {
         corners: corners(&bonded, &loose, &places),
         ..Terms::default()
@@ -204,9 +228,6 @@ pub(super) fn minimised(
         moved(molecules[1], first_of_ligand, &|x| back.apply(x)),
     ])
 }
-
-/// Largest radius of an atom whose bonds are found, Å.
-const WIDEST: f64 = 2.0;
 
 /// Whether each atom of both molecules is loose: those of residues with an atom near the other molecule, unless
 /// they are held.

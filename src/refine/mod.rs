@@ -24,7 +24,7 @@ use knotdock_structures::{Knots, PolarAtom};
 use rayon::prelude::*;
 use serde::Serialize;
 
-use self::minimise::minimised;
+use self::minimise::{bonds, minimised};
 use crate::side_chains::{HeldResidue, RepackOptions, Repacker};
 
 /// Options of a refinement.
@@ -65,6 +65,8 @@ impl RefineOptions {
 pub struct Refiner<'a> {
     molecules: [&'a Molecule; 2],
     polar: [Vec<PolarAtom>; 2],
+    /// Bonded atoms of each atom.
+    bonds: [Vec<Vec<usize>>; 2],
     fit: SharpFit,
     repacker: Option<Repacker<'a>>,
     options: RefineOptions,
@@ -136,6 +138,7 @@ impl<'a> Refiner<'a> {
         Ok(Self {
             molecules,
             polar: molecules.map(Molecule::polar_atoms),
+            bonds: molecules.map(bonds),
             fit: sharp_fit(molecules, options.ph)?,
             repacker: options.side_chains.then(repacker),
             options,
@@ -184,8 +187,9 @@ impl<'a> Refiner<'a> {
             let before = molecules
                 .as_ref()
                 .map_or(self.molecules, |both| both.each_ref());
-            let polar = [&self.polar[0][..], &self.polar[1]];
-            if let Some(minimised) = minimised(before, polar, &place.pose) {
+            let polar = self.polar.each_ref().map(Vec::as_slice);
+            let bonds = self.bonds.each_ref().map(Vec::as_slice);
+            if let Some(minimised) = minimised(before, polar, bonds, &place.pose) {
                 let fit = sharp_fit(minimised.each_ref(), self.options.ph)?;
                 let energy = fit.energy(&place.pose);
                 if energy.total() < place.energy.total() {

@@ -19,8 +19,8 @@ use knotdock::output::files::added::Addition;
 use knotdock::output::files::complexes::{PosedPair, file_names};
 use knotdock::output::files::model_file::{model_file_name, write_model_file};
 use knotdock::output::files::staging::put_back;
-use knotdock::output::run_folder::TopComplexes;
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
+use knotdock::output::top_complexes::TopComplexes;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::threads;
 use knotdock_structures::Error;
@@ -178,7 +178,6 @@ impl Export {
                 check_not_read(&folder.join(name), read)?;
             }
             let wanted = run.options.changed(|options| {
-                options.output.write_top = rows.len();
                 options.output.raw |= self.raw;
             });
             let top = TopComplexes::new(bodies.placed(), &rows, &wanted)?;

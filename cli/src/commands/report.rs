@@ -14,8 +14,8 @@ use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::is_run;
 use knotdock::output::files::seal::{REPORT, is_sealed};
 use knotdock::output::files::staging::put_back;
-use knotdock::output::run_folder::TopComplexes;
 use knotdock::output::tables::poses::PoseTable;
+use knotdock::output::top_complexes::TopComplexes;
 use knotdock::threads;
 use knotdock_structures::Error;
 
@@ -100,7 +100,11 @@ fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Error> {
     let table = PoseTable::read(&directory.join("poses.csv"))?;
     let bodies = Bodies::recorded(run.inputs.pair(), &record_path, &run.options)?;
     let contacts = bodies.contacts(&table, &run.options);
-    let top = TopComplexes::new(bodies.placed(), table.rows(), &run.options)?;
+    let top = TopComplexes::new(
+        bodies.placed(),
+        run.options.output.top(table.rows()),
+        &run.options,
+    )?;
     let report = RunReport {
         record: &record,
         options: &run.options,

@@ -18,8 +18,9 @@ use knotdock::output::files::staging::Stage;
 use knotdock::output::files::viewers::ViewedComplex;
 use knotdock::output::files::whole_file::to_json;
 use knotdock::output::records::program::Program;
-use knotdock::output::run_folder::{TopComplexes, write_scripts};
+use knotdock::output::run_folder::write_scripts;
 use knotdock::output::tables::poses::PoseRow;
+use knotdock::output::top_complexes::TopComplexes;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::Error;
 
@@ -72,9 +73,8 @@ impl Ensemble {
             }
             let specs = self.conformations(member).map(|laid| laid.spec.clone());
             let bodies = Bodies::of(specs, &self.request.given.options)?;
-            let mut options = self.request.given.options.clone();
-            options.output.write_top = own.len();
-            let top = TopComplexes::new(bodies.placed(), &own, &options)?;
+            let options = &self.request.given.options;
+            let top = TopComplexes::new(bodies.placed(), &own, options)?;
             let complexes = (&own[..], top.refined());
             let placed = bodies.placed();
             let written = placed.write(complexes, Arrangement::Pair, (folder, None))?;

@@ -11,7 +11,7 @@ async function showRun(data) {
   show(".of-molecules", !isMesh);
   show(".of-native", column("capri") >= 0);
   show(".of-known", !isMesh && data.bodies.some((body) => body.active.length + body.blocked.length > 0));
-  const clusters = data.rows.map((row) => row[column("cluster")]);
+  const clusters = data.rows.map((row) => row[column("cluster")] ?? null);
   show(".of-clusters", new Set(clusters).size < clusters.length);
   let chosen = -1;
   let scene = null;
@@ -71,8 +71,7 @@ async function showRun(data) {
   byId("all-columns").addEventListener("change", (event) => table.showAll(event.target.checked));
   axis.addEventListener("change", () => drawFunnelOf(chosen));
   byId("download").addEventListener("click", () => download(data, [chosen], column));
-  const best = data.rows.map((_, row) => row).filter((row) => firstsOf(clusters)[row]).slice(0, BEST);
-  byId("download-best").addEventListener("click", () => download(data, best, column));
+  byId("download-best").addEventListener("click", () => download(data, bestRows(clusters), column));
   const cannot = data.bodies.some((body) => body.format !== "pdb");
   if (cannot && !isMesh) for (const id of ["download", "download-best"]) set(byId(id), { disabled: true, title: "PDB cannot hold these molecules; `knotdock export` writes mmCIF" });
 
@@ -80,7 +79,7 @@ async function showRun(data) {
     if (data.rows.length === 0) return;
     scene = makeScene(byId("scene"), data);
     wire(scene, data, isMesh);
-    drawBest(scene, data, column, choose);
+    drawBest(scene, data, bestRows(clusters), column, choose);
     scene.show(Math.max(chosen, 0));
   });
   if (data.rows.length > 0) choose(0);
@@ -93,10 +92,13 @@ function firstsOf(clusters) {
   return clusters.map((cluster) => { const is = cluster === null || !seen.has(cluster); seen.add(cluster); return is; });
 }
 
-/** Small pictures of the best clusters, each of which selects its row. */
-function drawBest(scene, data, column, choose) {
-  const clusters = data.rows.map((row) => row[column("cluster")] ?? null);
-  const rows = firstsOf(clusters).flatMap((is, row) => is ? [row] : []).slice(0, BEST);
+/** The first rows of the best clusters. */
+function bestRows(clusters) {
+  return firstsOf(clusters).flatMap((is, row) => is ? [row] : []).slice(0, BEST);
+}
+
+/** Small pictures of some rows, each of which selects its row. */
+function drawBest(scene, data, rows, column, choose) {
   byId("best").replaceChildren(...rows.map((row) => {
     scene.show(row);
     const rank = data.rows[row][column("rank")];
