@@ -119,20 +119,21 @@ fn minimisation_parts_what_clashes_and_keeps_shapes() {
         let packed = repacker.repack(&refined.pose);
         for (side, packed) in [packed.receptor, packed.ligand].iter().enumerate() {
             let after = refined.molecule(side, &molecules[side]);
-            shapes_agree(packed, &after);
+            shapes_agree(&molecules[side], packed, &after);
         }
     }
 }
 
-/// Checks bonds, volumes spanned by CA and its neighbours, and torsions of peptide bonds.
-fn shapes_agree(before: &Molecule, after: &Molecule) {
+/// Checks bonds, volumes spanned by CA and its neighbours, and torsions of peptide bonds. Bonds are those of the file:
+/// packing may put other atoms as near.
+fn shapes_agree(file: &Molecule, before: &Molecule, after: &Molecule) {
     let place = |molecule: &Molecule, atom: usize| Vector3::from(molecule.atoms[atom].position);
     let distance = |of: &Molecule, a: usize, b: usize| (place(of, a) - place(of, b)).norm();
     let count = before.atoms.len();
     let bonded: Vec<Vec<usize>> = (0..count)
         .map(|a| {
             let others = (0..count).filter(|&b| b != a);
-            others.filter(|&b| distance(before, a, b) < 1.9).collect()
+            others.filter(|&b| distance(file, a, b) < 1.9).collect()
         })
         .collect();
     let mut torsions = 0;
