@@ -120,7 +120,7 @@ test("a pair is dropped, marked, docked, looked at and repeated, and a run survi
   await page.waitForSelector('#receptor .blocked[data-key="A:62"]');
   assert.equal(await page.isChecked("[name=preset][value=fast]"), true);
   assert.equal(await page.locator('#receptor .active[data-key="A:57"]').count(), 1);
-  await page.check("[name=preset][value=thorough]");
+  await page.check("[name=preset][value=default]");
   await set(page, "rotations", "200000");
   await page.waitForFunction(() => !document.getElementById("start").disabled);
   await page.click("#start");
@@ -165,7 +165,7 @@ test("the page works by keyboard alone at 400 pixels, and what it refuses it say
   };
   const choose = async (side, file) => {
     await tabTo(`#${side} input[type=file]`);
-    const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.keyboard.press("Enter")]);
+    const [chooser] = await Promise.all([page.waitForEvent("filechooser"), page.keyboard.press("Space")]);
     await chooser.setFiles(file);
     await page.waitForFunction((id) => document.querySelectorAll(`#${id} [data-key]`).length > 0, side);
   };
