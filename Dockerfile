@@ -14,7 +14,7 @@ WORKDIR /source
 COPY . .
 COPY --from=viewer /viewer/node_modules viewer/node_modules
 RUN target="$(uname -m)-unknown-linux-musl" \
-    && cargo build --release --locked -p knotdock-cli --no-default-features --features viewer --target "$target" \
+    && cargo build --release --locked -p knotdock-cli --no-default-features --features viewer,serve --target "$target" \
     && cp "target/$target/release/knotdock" /knotdock
 
 FROM scratch

@@ -1,5 +1,5 @@
 #!/usr/bin/env bash
-# Clicks through reports in headless Chromium. Needs node and npm (20 or later) and Debian's package chromium, or
+# Clicks through reports and the page of `knotdock serve` in headless Chromium. Needs node and npm (20 or later) and Debian's package chromium, or
 # CHROMIUM set to one; and the program as the tests build it. With --install it fetches what npm has and checks nothing.
 set -euo pipefail
 cd "$(dirname "${BASH_SOURCE[0]}")/.."
@@ -12,4 +12,4 @@ fi
 
 cargo test --workspace --no-run --quiet --locked
 node viewer/test/make.mjs "$target/debug/knotdock" "$target/reports"
-REPORTS=$target/reports npm test --prefix viewer
+KNOTDOCK=$target/debug/knotdock REPORTS=$target/reports npm test --prefix viewer

@@ -6,7 +6,7 @@ use std::io::Read;
 use std::path::Path;
 use std::process::{Output, Stdio};
 
-use crate::program::succeed;
+use crate::program::{refused, succeed};
 use serde_json::Value;
 
 fn place() -> tempfile::TempDir {
@@ -237,6 +237,7 @@ fn inspect_says_what_was_read_and_assumed() {
             "accessible_area",
             "active_sites",
             "antibody",
+            "chains",
             "input",
             "labels",
             "pose_terms",
@@ -249,6 +250,15 @@ fn inspect_says_what_was_read_and_assumed() {
     assert_eq!(object["input"]["chains"], serde_json::json!(["A"]));
     // A helix of sixteen alanines: its two ends cancel.
     assert_eq!(object["input"]["atoms"], 80);
+    let residues = object["chains"][0]["residues"].as_array().unwrap();
+    assert_eq!(
+        (object["chains"][0]["chain"].as_str(), residues.len()),
+        (Some("A"), 16)
+    );
+    assert_eq!(
+        residues[15],
+        serde_json::json!({ "number": "16", "name": "ALA", "letter": "A" })
+    );
     assert_eq!(object["labels"]["net_charge"], 0.0);
     assert_eq!(object["labels"]["termini"], serde_json::json!([1, 1]));
     assert_eq!(object["labels"]["typed_atoms"], 80);
@@ -257,6 +267,23 @@ fn inspect_says_what_was_read_and_assumed() {
     // Eighty atoms of 1.42 to 1.88 Å that overlap their neighbours.
     assert!((800.0..1600.0).contains(&volume), "{volume}");
     assert!(object["volume_error"].as_f64().unwrap() < 1e-3 * volume);
+}
+
+/// A mesh has a surface in place of chains.
+#[test]
+fn inspect_reads_a_mesh() {
+    let folder = place();
+    let tetrahedron = "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nf 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n";
+    fs::write(folder.path().join("mesh.obj"), tetrahedron).unwrap();
+    let object = object(&run(folder.path(), "inspect mesh.obj --json"));
+    assert_eq!(keys(&object), ["input", "surface"]);
+    assert_eq!(object["surface"]["triangle_count"], 4);
+    let words = ["inspect", "mesh.obj", "--atoms", "atoms.csv"];
+    let error = refused(folder.path(), words);
+    assert!(
+        error["message"].as_str().unwrap().contains("mesh"),
+        "{error}"
+    );
 }
 
 #[test]

@@ -101,6 +101,9 @@ test("a pair is dropped, marked, docked, looked at and repeated, and a run survi
   const run = "1ppe_receptor_unbound_1ppe_ligand_unbound";
   await page.waitForSelector("#now:not([hidden])");
   assert.equal(await page.textContent("#now-run"), run);
+  await page.setViewportSize({ width: 400, height: 900 });
+  assert.equal(await page.evaluate(() => document.documentElement.scrollWidth), 400);
+  await page.setViewportSize({ width: 1280, height: 900 });
   await becomes(page, run, "done");
   await page.waitForSelector("#news a");
   const command = await item(page, run).locator("pre").textContent();

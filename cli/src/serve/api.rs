@@ -1,4 +1,4 @@
-//! Addresses of the server: the page, what it asks and what it may fetch.
+//! Addresses of the server: the page, its requests and the files of uploads and runs.
 
 use std::convert::Infallible;
 use std::fs;
@@ -125,7 +125,7 @@ async fn library() -> Answer<Response> {
     Ok((headers, packed).into_response())
 }
 
-/// What the page's forms are made from.
+/// Presets, options and addresses for the page's forms.
 async fn setup(State(server): Shared) -> Json<Value> {
     let presets = Preset::ALL.map(|preset| json!({ "name": preset.name, "about": preset.about }));
     let options = definitions()

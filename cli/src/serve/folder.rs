@@ -17,7 +17,7 @@ use super::api::Refusal;
 use knotdock::output::files::file_error::unwritable;
 use knotdock::output::files::lock::Lock;
 
-/// Folder of what belongs to no run.
+/// Folder of uploads and jobs.
 const OWN: &str = "serve";
 /// Uploads, as the commands of runs name them.
 pub const INPUTS: &str = "serve/inputs";
@@ -196,7 +196,7 @@ pub fn is_name(text: &str) -> bool {
     is_one && !text.starts_with('.') && !text.contains(['/', '\\', ':', '\0'])
 }
 
-/// The name under which an uploaded file is kept: letters, digits and `._-` of its own.
+/// The name under which an uploaded file is kept: its letters, digits and `._-`.
 fn kept_name(name: &str) -> Result<String, Refusal> {
     let plain = |c: char| {
         if c.is_ascii_alphanumeric() || "._-".contains(c) {
@@ -242,7 +242,7 @@ mod tests {
     }
 
     #[test]
-    fn uploads_keep_plain_names() {
+    fn names_of_uploads_are_cleaned() {
         let kept = |name: &str| kept_name(name).ok();
         assert_eq!(kept("../../etc/a b.pdb").as_deref(), Some("etc_a_b.pdb"));
         assert_eq!(kept("--output.PDB.gz").as_deref(), Some("output.PDB.gz"));

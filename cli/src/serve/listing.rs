@@ -1,5 +1,6 @@
 //! The list of runs: what the folder holds.
 
+use std::cmp::Reverse;
 use std::path::Path;
 use std::time::UNIX_EPOCH;
 
@@ -16,14 +17,25 @@ use knotdock::options::{DockOptions, definitions};
 use knotdock::output::records::input_record::InputRecord;
 use knotdock_structures::Error;
 
-/// All runs, the latest first.
+/// All runs: the one that is going on, those that wait, and then the latest first.
 pub fn all(folder: &Folder) -> Result<Value, Error> {
     let mut names = folder.job_names()?;
     names.extend(folder.folder_names()?);
     names.sort();
     names.dedup();
     let mut runs: Vec<Value> = names.iter().filter_map(|name| one(folder, name)).collect();
-    runs.sort_by_key(|run| std::cmp::Reverse(run["time"].as_u64()));
+    let is_over = |run: &Value| {
+        !["running", "waiting"]
+            .map(Value::from)
+            .contains(&run["state"])
+    };
+    runs.sort_by_key(|run| {
+        (
+            is_over(run),
+            run["state"] != "running",
+            Reverse(run["time"].as_u64()),
+        )
+    });
     Ok(Value::Array(runs))
 }
 
@@ -45,7 +57,7 @@ fn one(folder: &Folder, name: &str) -> Option<Value> {
         entries.insert("job".to_owned(), json!(job));
         entries.entry("time").or_insert(json!(job.requested));
     }
-    // A folder that has a run is one, whatever became of the server that asked for it.
+    // A run in the folder is done, even if the server that made it ended before it.
     let state = match (&path, &job) {
         (Some(_), _) => JobState::Done,
         (None, Some(job)) if job.state != JobState::Done => job.state,

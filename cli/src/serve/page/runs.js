@@ -81,7 +81,8 @@ function item(run, repeat) {
   if (job) controls.push(button("Repeat with changes", () => repeat(job.request)));
   const about = sides ?? (job ? [job.request.receptor, job.request.ligand].filter(Boolean).map(({ files: [file], chains }) => `${file}${chains ? `:${chains}` : ""}`) : []);
   const lines = [make("p", {}, about.join(" and "))];
-  const chosen = settings ?? Object.entries(job?.request.options ?? {}).map(([option, value]) => `${option.replaceAll("_", "-")} ${value}`);
+  const { preset, options = {} } = job?.request ?? {};
+  const chosen = settings ?? [...(preset ? [`preset ${preset}`] : []), ...Object.entries(options).map(([option, value]) => `${option.replaceAll("_", "-")} ${value}`)];
   lines.push(make("p", { class: "note" }, chosen.length > 0 ? `Settings: ${chosen.join("; ")}` : "Default settings"));
   if (typeof best?.score === "number") lines.push(make("p", {}, `Best score ${best.score.toFixed(1)}${best.cluster_size ? `, a cluster of ${best.cluster_size}` : ""}`));
   if (state === "failed") lines.push(make("p", { class: "warnings" }, words(job?.error)));
