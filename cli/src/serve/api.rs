@@ -202,7 +202,7 @@ async fn uploaded(
 }
 
 /// Time that reading a structure may take.
-const READING: Duration = Duration::from_mins(2);
+const READING: Duration = Duration::from_secs(120);
 
 /// The report of `knotdock inspect` on a file of an upload.
 async fn inspect(
