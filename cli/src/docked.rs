@@ -145,7 +145,7 @@ impl Docked {
 
     pub fn summary(&self) -> RunSummary {
         let table = self.table();
-        let counts = [self.outcome.poses_kept, self.outcome.clusters];
+        let counts = [self.outcome.poses_kept, self.outcome.clusters.len()];
         let counts = counts.map(|count| u64::try_from(count).ok());
         RunSummary::of_rows(counts, table.objects(0..self.outcome.poses.len()))
     }
