@@ -194,3 +194,65 @@ fn collisions_are_shown() {
             .contains("which hold it")
     );
 }
+
+/// The known complex is drawn while its file and the figures of the table are those of the run; the figures of clusters are
+/// kept from report to report.
+#[test]
+fn a_report_written_again_has_the_known_complex_and_the_figures() {
+    let folder = place();
+    let here = |name: &str| folder.path().join(name);
+    run(
+        folder.path(),
+        &format!("dock receptor.pdb ligand.pdb {SMALL} -o first"),
+    );
+    for (rank, name) in [(1, "known.pdb"), (2, "other.pdb")] {
+        fs::copy(here(&format!("first/top/rank_000{rank}.pdb")), here(name)).unwrap();
+    }
+    run(
+        folder.path(),
+        &format!("dock receptor.pdb ligand.pdb --native known.pdb {SMALL} -o run"),
+    );
+    let report = here("run/report.html");
+    let read = || {
+        let page = fs::read_to_string(&report).unwrap();
+        (
+            data(&report),
+            page.contains("The known complex is not shown"),
+        )
+    };
+    let (written, is_left_out) = read();
+    assert!(!is_left_out);
+    let overlay = &written["overlay"];
+    let rows = written["rows"].as_array().unwrap();
+    assert_eq!(overlay["of_row"].as_array().unwrap().len(), rows.len());
+    assert!(!overlay["traces"][0][1][0].as_array().unwrap().is_empty());
+    for (row, figures) in rows.iter().zip(written["clusters"].as_array().unwrap()) {
+        assert_eq!(row[3].as_f64(), figures[0].as_f64(), "cluster_size");
+    }
+    assert!(data(&here("first/report.html"))["overlay"].is_null());
+    run(folder.path(), "report run");
+    assert_eq!(read(), (written.clone(), false));
+
+    run(
+        folder.path(),
+        "evaluate run --native other.pdb -o run/poses.csv --force --quiet",
+    );
+    run(folder.path(), "report run");
+    let (other, is_left_out) = read();
+    assert!(is_left_out && other["overlay"].is_null());
+    run(
+        folder.path(),
+        "evaluate run -o run/poses.csv --force --quiet",
+    );
+    run(folder.path(), "report run");
+    assert_eq!(read().0["overlay"], written["overlay"]);
+    fs::copy(here("other.pdb"), here("known.pdb")).unwrap();
+    run(folder.path(), "report run");
+    let (changed, is_left_out) = read();
+    assert!(is_left_out && changed["overlay"].is_null());
+    assert_eq!(changed["clusters"], written["clusters"]);
+    // Figures are lost with the report.
+    fs::remove_file(&report).unwrap();
+    run(folder.path(), "report run");
+    assert!(read().0["clusters"].is_null());
+}

@@ -11,7 +11,7 @@ use crate::messages::console::Console;
 use crate::messages::dock::{
     cost_text, error_warning, gaps_text, next_text, outcome_text, restraints_warning, timings_text,
 };
-use crate::report::{MAX_ROWS, RunReport, Viewer};
+use crate::report::{MAX_ROWS, RunReport, Viewer, figures};
 use crate::shards::WIDE_COLUMNS;
 use crate::tables::batch_results::RunSummary;
 use crate::tables::report::{BEST, best_clusters, counted, firsts};
@@ -145,7 +145,7 @@ impl Docked {
 
     pub fn summary(&self) -> RunSummary {
         let table = self.table();
-        let counts = [self.outcome.poses_kept, self.outcome.clusters];
+        let counts = [self.outcome.poses_kept, self.outcome.clusters.len()];
         let counts = counts.map(|count| u64::try_from(count).ok());
         RunSummary::of_rows(counts, table.objects(0..self.outcome.poses.len()))
     }
@@ -207,6 +207,8 @@ impl Docked {
                 bodies: request.bodies.placed(),
                 refined: self.top.refined(),
                 contacts: contacts.as_ref(),
+                known: known.as_ref().map(KnownComplex::matched),
+                clusters: figures(&outcome.clusters),
                 directory: &docking.shown.display().to_string(),
             };
             let text = report.text(Viewer::embedded());

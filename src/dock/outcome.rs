@@ -1,6 +1,7 @@
 //! Outcome of a docking run: ranked poses, the plan it followed, the errors it measured and its cost.
 
 use crate::options::Stopped;
+use crate::rank::cluster::ClusterFigures;
 use crate::rank::ranking::RankedPose;
 use crate::rank::sharp::{Evidence, SharpFinding};
 use crate::search::coarse_to_fine::FineSearched;
@@ -125,8 +126,8 @@ pub struct DockOutcome {
     pub poses: Vec<RankedPose>,
     /// Poses kept before clustering.
     pub poses_kept: usize,
-    /// Number of clusters.
-    pub clusters: usize,
+    /// Figures of the clusters by the scores of the fast path, in the order of their numbers.
+    pub clusters: Vec<ClusterFigures>,
     /// Rotations of the set that were searched.
     pub searched: usize,
     /// Place where the run, or one that it repeats, stopped for a deadline; `None` if it went to its end.

@@ -10,7 +10,7 @@ use crate::pose_space::refine::{AscentLimits, RefinedPose, printed};
 use crate::pose_space::rotations::RotationGroup;
 use crate::progress::{NoProgress, Progress};
 use crate::rank::candidates::{Candidate, candidates, clusters_of, deduplicated, merge};
-use crate::rank::cluster::RigidBody;
+use crate::rank::cluster::{RigidBody, figures};
 use crate::rank::ranking::{PoseScorer, Ranking, report};
 use crate::rank::sharp::{optima, settle};
 use crate::rank::time_left::{poses_in_time, rescoring_seconds};
@@ -244,6 +244,8 @@ impl<'a> Searched<'a> {
             plan.row_choice(2.0 * plan.options.kernel.tolerance * best_peak.abs()),
             progress,
         );
+        let scored = candidates.iter().map(|one| (one.pose, one.score));
+        let figures = figures(&body, &scored.collect::<Vec<_>>(), &clusters);
         let error = check.error(plan, &found.peaks, &ranking);
         clock.lap("score");
         let timing = clock.into_stages();
@@ -252,7 +254,11 @@ impl<'a> Searched<'a> {
         Ok(DockOutcome {
             poses: ranking.poses,
             poses_kept: candidates.len(),
-            clusters: ranking.clusters,
+            clusters: ranking
+                .clusters
+                .iter()
+                .map(|&place| figures[place])
+                .collect(),
             searched: found.searched,
             stopped,
             error,

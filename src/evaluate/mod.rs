@@ -45,17 +45,19 @@ mod test_molecules;
 #[cfg(test)]
 mod tests;
 
-use std::collections::{HashMap, HashSet};
+use std::collections::{BTreeSet, HashMap, HashSet};
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::Molecule;
+use rayon::prelude::*;
 
 pub use chain_choice::ChainChoice;
 pub use conformation::{Superposed, superpose};
 pub use native::Native;
 pub use quality::{Capri, Criterion, PoseQuality, dockq};
 pub use report::{ChainMatch, MatchMethod, MatchReport, NativeComplex, SideMatch};
+pub use residues::Trace;
 pub use shared_chains::{SharedChains, shared_chains};
 
 use crate::evaluate::matching::superposition::MAX_FIT_RMSD;
@@ -79,6 +81,8 @@ struct PreparedAssignment {
     contacts: NativeContacts,
     /// Whether both sides have the native's shape.
     fits: bool,
+    /// The native's receptor, superposed on the docked one, and ligand.
+    traces: [Trace; 2],
     report: MatchReport,
 }
 
@@ -152,6 +156,23 @@ impl Evaluator {
 
     /// Judges one pose of the ligand, with the report of its best assignment.
     pub fn best(&self, pose: &Pose) -> (PoseQuality, &MatchReport) {
+        let (quality, place) = self.assigned(pose);
+        (quality, &self.assignments[place].report)
+    }
+
+    /// The known complexes by which poses are measured, and the place of each pose's own among them. A complex is the
+    /// traces of receptor and ligand in the frame of the docked receptor, on which the known one is superposed.
+    pub fn known(&self, poses: &[Pose]) -> (Vec<&[Trace; 2]>, Vec<usize>) {
+        let own = poses.par_iter().map(|pose| self.assigned(pose).1);
+        let own: Vec<usize> = own.collect();
+        let used: BTreeSet<usize> = own.iter().copied().collect();
+        let places = own.iter().map(|&one| used.range(..one).count()).collect();
+        let traces = used.iter().map(|&one| &self.assignments[one].traces);
+        (traces.collect(), places)
+    }
+
+    /// Judges one pose by its best assignment, with the place of that.
+    fn assigned(&self, pose: &Pose) -> (PoseQuality, usize) {
         let bounded = self.assignments.iter().enumerate().map(|(place, one)| {
             let rmsds = one.rmsds.at(pose);
             let bound = dockq(one.contacts.most_kept(), rmsds.interface, rmsds.ligand);
@@ -171,7 +192,7 @@ impl Evaluator {
                 (quality, best) = (other, place);
             }
         }
-        (quality, &self.assignments[best].report)
+        (quality, best)
     }
 }
 
@@ -231,6 +252,9 @@ fn prepare(
     check_matched(&sides, &rmsds)?;
     Ok(PreparedAssignment {
         fits: backbone_rmsd.iter().all(|rmsd| *rmsd <= MAX_FIT_RMSD),
+        traces: groups
+            .each_ref()
+            .map(|group| group.trace(&rmsds.to_receptor())),
         report: match_report(sides, groups, &contacts),
         rmsds,
         contacts,

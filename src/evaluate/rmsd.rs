@@ -94,6 +94,11 @@ impl RmsdForms {
         self.whole.each_ref().map(|side| side.rmsd(&side.best))
     }
 
+    /// The motion of the native that superposes its receptor on the docked one.
+    pub fn to_receptor(&self) -> Pose {
+        self.whole[0].best.inverse()
+    }
+
     /// The RMSDs with the ligand at `pose`.
     pub fn at(&self, pose: &Pose) -> Rmsds {
         let [receptor, ligand] = &self.whole;

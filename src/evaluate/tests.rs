@@ -78,6 +78,36 @@ fn translation_is_the_ligand_rmsd() {
     assert!(lost.irmsd.is_finite() && lost.lrmsd.is_finite() && lost.dockq < 1e-9);
 }
 
+/// The native in another frame comes back onto the docked receptor, and its ligand to where it belongs; a missing residue
+/// cuts its line.
+#[test]
+fn the_known_complex_is_laid_over_the_docked_receptor() {
+    let (receptor, ligand) = bound();
+    let motion = Pose::from_parts([0.7, -0.3, 0.5, 0.4], [12.0, -30.0, 5.0]);
+    let [mut first, second] = [&receptor, &ligand].map(|atoms| moved(atoms, &motion));
+    first.retain(|atom| atom.residue_number != 11);
+    let evaluator = evaluator((&receptor, &ligand), (&first, &second)).unwrap();
+    let (known, places) = evaluator.known(&[Pose::identity(), translation(3.0, 0.0, 0.0)]);
+    assert_eq!((known.len(), places), (1, vec![0, 0]));
+    let lengths = known[0]
+        .each_ref()
+        .map(|trace| trace.iter().map(Vec::len).collect::<Vec<_>>());
+    assert_eq!(lengths, [vec![10, 29], vec![30]]);
+    let docked = receptor
+        .iter()
+        .chain(&ligand)
+        .filter(|atom| atom.name == "CA");
+    let docked = docked.filter(|atom| (&*atom.chain, atom.residue_number) != ("A", 11));
+    for (atom, at) in docked.zip(known[0].iter().flatten().flatten()) {
+        let off = (0..3).map(|axis| (atom.position[axis] - at[axis]).abs());
+        assert!(
+            off.fold(0.0, f64::max) < 1e-6,
+            "{at:?} of {}",
+            atom.residue_number
+        );
+    }
+}
+
 /// One residue of four backbone atoms at the corners of a square across the x axis.
 fn square(chain: &str, x: f64) -> Vec<Atom> {
     [

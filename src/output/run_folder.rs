@@ -231,7 +231,7 @@ impl<'a> FinishedRun<'a> {
             },
             results: Results {
                 poses: outcome.poses_kept,
-                clusters: outcome.clusters,
+                clusters: outcome.clusters.len(),
                 rows: outcome.poses.len(),
                 rotations: outcome.searched,
             },

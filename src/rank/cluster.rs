@@ -64,6 +64,13 @@ impl RigidBody {
         })
     }
 
+    /// RMSD in Å of a pose, or of the nearest of its equivalents, from a placed body.
+    pub fn rmsd(&self, placed: &PlacedBody, pose: &Pose) -> f64 {
+        let images = self.images(pose).into_iter();
+        let squares = images.map(|image| self.mean_square(placed, &image));
+        squares.fold(f64::INFINITY, f64::min).sqrt()
+    }
+
     /// RMSD in Å between two poses that differ by `shift` (Å) and by a rotation of `angle` (radians) about the body's
     /// middle: root of the mean square over axes.
     ///
@@ -112,6 +119,52 @@ pub fn greedy(body: &RigidBody, poses: &[Pose], radius: f64) -> Vec<usize> {
     poses.iter().map(cluster).collect()
 }
 
+/// Figures of a cluster: of the scores of its poses, and of their distances from its centre.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ClusterFigures {
+    /// Number of poses.
+    pub size: usize,
+    /// Best score: that of the centre.
+    pub best: f64,
+    /// Mean score.
+    pub mean: f64,
+    /// Standard deviation of the scores about their mean.
+    pub deviation: f64,
+    /// Mean and largest RMSD of the other poses from the centre, Å; `None` if there are none.
+    pub rmsd: Option<[f64; 2]>,
+}
+
+/// The figures of each of the [`greedy`] clusters, in their order. Scores fall from pose to pose.
+pub fn figures(body: &RigidBody, poses: &[(Pose, f64)], clusters: &[usize]) -> Vec<ClusterFigures> {
+    let count = clusters.iter().max().map_or(0, |last| last + 1);
+    let mut members = vec![Vec::new(); count];
+    for (pose, &cluster) in poses.iter().zip(clusters) {
+        members[cluster].push(*pose);
+    }
+    let of_cluster = |members: &Vec<(Pose, f64)>| {
+        let (centre, best) = members[0];
+        let centre = body.place(&centre);
+        let share = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
+        let scores: Vec<f64> = members.iter().map(|(_, score)| *score).collect();
+        let mean = share(&scores);
+        let squares: Vec<f64> = scores.iter().map(|score| (score - mean).powi(2)).collect();
+        let others = members[1..].iter();
+        let rmsds: Vec<f64> = others.map(|(pose, _)| body.rmsd(&centre, pose)).collect();
+        ClusterFigures {
+            size: members.len(),
+            best,
+            mean,
+            deviation: share(&squares).sqrt(),
+            rmsd: rmsds
+                .iter()
+                .copied()
+                .reduce(f64::max)
+                .map(|largest| [share(&rmsds), largest]),
+        }
+    };
+    members.iter().map(of_cluster).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -146,9 +199,15 @@ mod tests {
         let poses = [forward, forward.inverse()];
         assert_eq!(greedy(&body, &poses, 5.0), [0, 1]);
         assert_eq!(
-            greedy(&body.with_equivalents(Equivalents::Inverse), &poses, 5.0),
+            greedy(
+                &body.clone().with_equivalents(Equivalents::Inverse),
+                &poses,
+                5.0
+            ),
             [0, 0]
         );
+        let body = body.with_equivalents(Equivalents::Inverse);
+        assert!(body.rmsd(&body.place(&poses[0]), &poses[1]) < 1e-6);
     }
 
     /// A second ring is the same whichever of its copies is called the first.
@@ -189,7 +248,24 @@ mod tests {
     fn greedy_takes_the_best_as_centre() {
         let body = RigidBody::new(&[[0.0; 3], [1.0, 0.0, 0.0]]);
         let at = |x: f64| Pose::from_parts([1.0, 0.0, 0.0, 0.0], [x, 0.0, 0.0]);
-        let clusters = greedy(&body, &[at(0.0), at(8.0), at(4.0), at(6.0), at(20.0)], 5.0);
+        let poses = [0.0, 8.0, 4.0, 6.0, 20.0].map(at);
+        let clusters = greedy(&body, &poses, 5.0);
         assert_eq!(clusters, [0, 1, 0, 1, 2]);
+        let scored: Vec<_> = poses.into_iter().zip([9.0, 8.0, 5.0, 4.0, 1.0]).collect();
+        let figures = figures(&body, &scored, &clusters);
+        assert_eq!(figures.len(), 3);
+        let expected = ClusterFigures {
+            size: 2,
+            best: 9.0,
+            mean: 7.0,
+            deviation: 2.0,
+            rmsd: Some([4.0, 4.0]),
+        };
+        assert_eq!(figures[0], expected);
+        assert_eq!(
+            (figures[1].deviation, figures[1].rmsd),
+            (2.0, Some([2.0; 2]))
+        );
+        assert_eq!((figures[2].deviation, figures[2].rmsd), (0.0, None));
     }
 }

@@ -84,11 +84,12 @@ pub struct RankedPose {
     pub z_score: Option<f64>,
 }
 
-/// The ranked rows, and the number of clusters.
+/// The ranked rows, and the order of the clusters.
 pub(crate) struct Ranking {
     /// Best first.
     pub poses: Vec<RankedPose>,
-    pub clusters: usize,
+    /// Places of the clusters among those given, best first.
+    pub clusters: Vec<usize>,
 }
 
 /// Most rows that a thread takes at once: refined ones take longer and come first.
@@ -205,7 +206,7 @@ pub(crate) fn report(
     }
     Ranking {
         poses,
-        clusters: order.len(),
+        clusters: order.into_iter().map(|(cluster, _)| cluster).collect(),
     }
 }
 

@@ -94,6 +94,38 @@ for (const [kind, body, works] of [["the library", library, true], ["another fil
   });
 }
 
+for (const width of [1280, 400]) {
+  test(`the known complex and the figures of the cluster, ${width} pixels wide`, async () => {
+    const { page, faults, close } = await open(reports().run, { width });
+    try {
+      const within = (selector) => page.locator(selector).evaluateAll((all) => all.length > 0 && all.every((one) => {
+        const { left, right, height } = one.getBoundingClientRect();
+        return left >= 0 && right <= document.documentElement.clientWidth && height > 0;
+      }));
+      const picture = () => page.evaluate(() => window.knotdock.picture());
+      const before = await picture();
+      await page.check("#show-overlay");
+      assert.notEqual(await picture(), before);
+      for (const selector of ["#show-overlay", "#legend li", "#cluster div"]) assert.ok(await within(selector), selector);
+      assert.equal(await page.locator("#cluster div").count(), 6);
+      assert.deepEqual(faults, []);
+    } finally {
+      await close();
+    }
+  });
+}
+
+test("a run without a known complex has none to draw", async () => {
+  const { page, close } = await open(reports().ring);
+  try {
+    assert.equal(await page.locator("#show-overlay").isVisible(), false);
+    assert.match(await page.locator("#of-cluster").innerText(), /at most 5\sÅ/);
+    assert.equal(await page.locator("#cluster div").count(), 6);
+  } finally {
+    await close();
+  }
+});
+
 test("a narrow window shows the view before the table", async () => {
   const { page, close } = await open(reports().run, { width: 400 });
   try {

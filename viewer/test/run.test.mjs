@@ -39,6 +39,12 @@ const differing = (one, other) => shown.page.evaluate(([one, other]) => {
   return a.reduce((count, pixel, place) => count + (pixel !== b[place]), 0);
 }, [one.number, other.number]);
 
+/** Pixels of a picture in the colour of the known complex, in any light. */
+const greens = (picture) => shown.page.evaluate((number) => window.pictures[number].reduce((count, pixel) => {
+  const [red, green, blue] = [pixel & 255, (pixel >> 8) & 255, (pixel >> 16) & 255];
+  return count + (green > 1.3 * blue && green > 3 * red);
+}, 0), picture.number);
+
 test("the view shows the selected pose, and another where another is selected", async () => {
   const first = await pixels();
   assert.ok(first.colours > 100, `only ${first.colours} colours`);
@@ -139,6 +145,41 @@ test("sticks, known residues and consensus colours change the view", async () =>
     await off();
     assert.equal(await differing(plain, await pixels()), 0);
   }
+});
+
+test("the known complex is drawn over the pose, and goes again", async () => {
+  const plain = await pixels();
+  const legend = () => text("#legend");
+  assert.doesNotMatch(await legend(), /known complex/);
+  await shown.page.check("#show-overlay");
+  assert.match(await legend(), /known complex/);
+  const first = await pixels();
+  assert.ok(await greens(first) > 200 + await greens(plain));
+  // It stays where it is while the ligand moves.
+  await rows().nth(4).click();
+  const fifth = await pixels();
+  assert.ok(await greens(fifth) > 200 && await differing(first, fifth) > 200);
+  await rows().nth(0).click();
+  assert.equal(await differing(first, await pixels()), 0);
+  await shown.page.uncheck("#show-overlay");
+  assert.equal(await differing(plain, await pixels()), 0);
+});
+
+test("the figures of the selected pose's cluster agree with the table", async () => {
+  const read = async () => Object.fromEntries(await shown.page.locator("#cluster div").evaluateAll((all) => all.map((one) => [...one.children].map((part) => part.textContent))));
+  for (const row of [0, 4]) {
+    await rows().nth(row).click();
+    const found = await read();
+    const size = Number(await rows().nth(row).locator("td:nth-child(3)").innerText());
+    assert.equal(Number(found.poses), size);
+    const [best, mean, spread] = ["best score", "mean score", "standard deviation of scores"].map((name) => Number(found[name]));
+    assert.ok(size === 1 ? best === mean && spread === 0 : best > mean && spread > 0, JSON.stringify(found));
+    // The score of a cluster is at least that of its best pose.
+    assert.ok(best <= 1.01 * Number(await rows().nth(row).locator("td:nth-child(2)").innerText()));
+    const [near, far] = ["mean RMSD from the best, Å", "largest RMSD, Å"].map((name) => Number(found[name]));
+    assert.ok(size === 1 || (near > 0 && near <= far && far <= 5), JSON.stringify(found));
+  }
+  await rows().nth(0).click();
 });
 
 test("the saved complex is that of the run", async () => {

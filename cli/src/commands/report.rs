@@ -7,9 +7,11 @@ use serde_json::json;
 
 use crate::arguments::machine::Threads;
 use crate::inputs::bodies::Bodies;
+use crate::inputs::request::KnownComplex;
 use crate::messages::console::Console;
 use crate::records::recorded_run::{RecordedRun, read_record};
-use crate::report::{DirectoryKind, RunReport, Viewer, ViewerArguments};
+use crate::report::{DirectoryKind, RunReport, Viewer, ViewerArguments, figures_of};
+use knotdock::dock::pair::Pair;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::is_run;
 use knotdock::output::files::seal::{REPORT, is_sealed};
@@ -105,6 +107,12 @@ fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Error> {
         run.options.output.top(table.rows()),
         &run.options,
     )?;
+    let known = match (bodies.pair(), &run.inputs.native) {
+        (Pair::Molecules(pair), Some(native)) => {
+            Some(KnownComplex::recorded(native, &record_path, pair, &table))
+        }
+        _ => None,
+    };
     let report = RunReport {
         record: &record,
         options: &run.options,
@@ -112,6 +120,8 @@ fn page(directory: &Path, viewer: Option<&Viewer>) -> Result<String, Error> {
         bodies: bodies.placed(),
         refined: top.refined(),
         contacts: contacts.as_ref(),
+        known: known.as_ref().map(KnownComplex::matched),
+        clusters: figures_of(&directory.join(REPORT), &table),
         directory: &name,
     };
     Ok(report.text(viewer))

@@ -11,13 +11,16 @@ use crate::messages::console::Console;
 use crate::records::recorded_run::RecordedRun;
 use knotdock::dock::gaps::closer;
 use knotdock::dock::pair::{GivenDefaults, Pair, PreparedPair, Sampling};
-use knotdock::evaluate::Evaluator;
+use knotdock::evaluate::{ChainChoice, Evaluator};
 use knotdock::options::{DockOptions, MachineOptions};
 use knotdock::output::files::staging::put_back;
+use knotdock::output::records::input_record::NativeRecord;
 use knotdock::output::records::manifest::Inputs;
 use knotdock::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
+use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::Error;
+use knotdock_structures::molecule::Molecule;
 
 /// Options that follow from meshes unless they are given.
 #[derive(Clone, Copy)]
@@ -58,11 +61,42 @@ pub enum KnownComplex {
 }
 
 impl KnownComplex {
+    /// The known complex that a run recorded, matched with its molecules. It measures the poses only if `table` has its
+    /// figures.
+    pub fn recorded(
+        native: &NativeRecord,
+        run: &Path,
+        pair: [&Molecule; 2],
+        table: &PoseTable,
+    ) -> Self {
+        let files = NativeFiles::recorded(native, run);
+        let matched = files.and_then(|files| files.evaluator(pair, &ChainChoice::default()));
+        let first = table.rows().first();
+        let written = table.field(0, "irmsd").and_then(|field| field.parse().ok());
+        let differs = |evaluator: &Evaluator| {
+            let computed = first.map(|row| evaluator.evaluate(&row.pose).irmsd);
+            let both = computed.zip(written);
+            both.is_some_and(|(one, other): (f64, f64)| (one - other).abs() > 1e-3)
+        };
+        match matched {
+            Ok(evaluator) if differs(&evaluator) => Self::Unmatched(
+                "poses.csv was measured by another one, or by other chains of it".to_owned(),
+            ),
+            Ok(evaluator) => Self::Matched(evaluator),
+            Err(error) => Self::Unmatched(error.message().to_owned()),
+        }
+    }
+
     /// What measures poses, if they can be measured.
     pub fn evaluator(&self) -> Option<&Evaluator> {
+        self.matched().ok()
+    }
+
+    /// What measures poses, or why they cannot be measured.
+    pub fn matched(&self) -> Result<&Evaluator, &str> {
         match self {
-            Self::Matched(evaluator) => Some(evaluator),
-            Self::Unmatched(_) => None,
+            Self::Matched(evaluator) => Ok(evaluator),
+            Self::Unmatched(reason) => Err(reason),
         }
     }
 

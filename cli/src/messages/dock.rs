@@ -54,7 +54,7 @@ pub fn outcome_text(outcome: &DockOutcome) -> String {
     lines.push(format!(
         "{} in {}",
         counted(outcome.poses_kept, "pose"),
-        counted(outcome.clusters, "cluster")
+        counted(outcome.clusters.len(), "cluster")
     ));
     lines.join("\n")
 }
@@ -549,7 +549,7 @@ pub fn next_text(
     let rows = outcome.poses.len();
     let listed = counted(
         rows,
-        if rows == outcome.clusters {
+        if rows == outcome.clusters.len() {
             "cluster"
         } else {
             "pose"

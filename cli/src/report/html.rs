@@ -1,7 +1,11 @@
 //! The page of a report: head, sections, packed data, scripts and seal.
 
 use std::fmt::Write as _;
+use std::io::{BufReader, Read as _};
 
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
+use flate2::read::GzDecoder;
 use serde_json::Value;
 
 use crate::report::viewer::{ADDRESS, Viewer, packed};
@@ -85,6 +89,17 @@ impl Page<'_> {
 
 fn script(id: &str, packed: &str) -> String {
     format!("<script type=\"text/plain\" id=\"{id}\">{packed}</script>\n")
+}
+
+/// Most bytes of unpacked data.
+const MAX_DATA: u64 = 256 << 20;
+
+/// The data of the scripts in the text of a page; `None` of anything else.
+pub(super) fn data_of(page: &[u8]) -> Option<Value> {
+    let (_, rest) = std::str::from_utf8(page).ok()?.split_once("id=\"data\">")?;
+    let packed = STANDARD.decode(rest.split_once('<')?.0).ok()?;
+    let data = GzDecoder::new(packed.as_slice()).take(MAX_DATA);
+    serde_json::from_reader(BufReader::new(data)).ok()
 }
 
 /// Text as HTML, also in attributes.

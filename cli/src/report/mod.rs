@@ -3,6 +3,7 @@
 //! A report holds all that it shows and sends no requests: its security policy forbids them. Data of the scripts (table,
 //! charts, view) are packed: JSON, gzip, base64. Sentences are plain HTML, and read without JavaScript.
 
+mod clusters;
 mod columns;
 mod html;
 mod lists;
@@ -13,7 +14,8 @@ mod shown;
 mod solids;
 mod viewer;
 
-pub use knotdock::output::run_contacts::{MAX_ROWS, RunContacts};
+pub use clusters::{figures, figures_of};
+pub use knotdock::output::run_contacts::MAX_ROWS;
 pub use lists::DirectoryKind;
 pub use run::RunReport;
 pub use shown::solid as shown_surface;

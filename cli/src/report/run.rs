@@ -11,6 +11,8 @@
 //! | `contacts` | one text per row, five numbers per pair of residues: places in `residues`, distance in 0.01 Å, hydrogen bonds, salt bridge |
 //! | `shares` | clusters that touch each residue, per side; `counted` of them were examined |
 //! | `chains` | names of chains in complexes |
+//! | `overlay` | known complexes over the receptor: `traces`, lines of both sides; `of_row`, the place of each row's own |
+//! | `clusters` | size; best, mean and standard deviation of scores; mean and largest RMSD |
 
 use std::collections::HashMap;
 use std::fmt::Write as _;
@@ -19,16 +21,18 @@ use serde_json::{Value, json};
 
 use crate::report::columns::{ShownColumn, is_term, shown};
 use crate::report::html::{Page, section};
-use crate::report::shown::{placement, rounded, solid};
+use crate::report::shown::{placement, rounded, significant, solid};
 use crate::report::viewer::{Viewer, on_request};
 use crate::report::{MAX_ROWS, run_cost, run_words};
+use knotdock::evaluate::{Evaluator, Trace};
 use knotdock::interface::{Contact, ResidueName, heavy_residues};
 use knotdock::options::DockOptions;
 use knotdock::output::run_contacts::RunContacts;
 use knotdock::output::run_folder::Bodies;
-use knotdock::output::tables::poses::PoseTable;
+use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::refine::Refined;
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{Format, Molecule, ResidueSelection, fits, write_renamed};
 
 /// A finished run, as it is shown.
@@ -41,6 +45,10 @@ pub struct RunReport<'a> {
     pub refined: &'a [Refined],
     /// Contacts of molecules in the poses of the table.
     pub contacts: Option<&'a RunContacts<'a>>,
+    /// The known complex, if one was named, or why it does not measure the poses.
+    pub known: Option<Result<&'a Evaluator, &'a str>>,
+    /// Figures of the clusters; `null` if they are lost.
+    pub clusters: Value,
     /// Its directory as commands would name it.
     pub directory: &'a str,
 }
@@ -95,7 +103,31 @@ pub(super) fn data(report: &RunReport, count: usize) -> Value {
         (Bodies::Molecules(_), None) => {}
         (Bodies::Solids(surfaces), _) => data["bodies"] = surfaces.iter().map(solid).collect(),
     }
+    if let Some(Ok(evaluator)) = report.known {
+        data["overlay"] = overlay(evaluator, &table.rows()[..count]);
+    }
+    if let Some(clusters) = report.clusters.as_array() {
+        let numbers = (0..count).filter_map(|row| table.field(row, "cluster")?.parse().ok());
+        let shown = numbers.max().unwrap_or(0);
+        data["clusters"] = clusters.iter().take(shown).cloned().collect();
+    }
     data
+}
+
+/// The known complexes with decimals that are seen, and which of them each row is measured by.
+fn overlay(evaluator: &Evaluator, rows: &[PoseRow]) -> Value {
+    let poses: Vec<Pose> = rows.iter().map(|row| row.pose).collect();
+    let (known, of_row) = evaluator.known(&poses);
+    let line = |line: &Vec<[f64; 3]>| -> Value {
+        let parts = line.as_flattened().iter();
+        parts.map(|part| rounded(*part, 1)).collect()
+    };
+    let side = |trace: &Trace| trace.iter().map(line).collect::<Value>();
+    let traces: Vec<_> = known
+        .iter()
+        .map(|sides| sides.each_ref().map(side))
+        .collect();
+    json!({ "traces": traces, "of_row": of_row })
 }
 
 /// A field of the table, with the digits that are shown and four more.
@@ -232,14 +264,17 @@ impl RunReport<'_> {
 
     fn page(&self, rows: usize, viewer: Option<&Viewer>) -> String {
         let data = data(self, rows);
-        let explorer = include_str!("page/explorer.html");
+        let radius = significant(self.options.ranking.cluster_radius, 3);
+        let unit = match self.bodies {
+            Bodies::Molecules(_) => "\u{a0}Å",
+            Bodies::Solids(_) => "",
+        };
+        let explorer = include_str!("page/explorer.html")
+            .replace("{{lacking}}", &on_request(viewer))
+            .replace("{{radius}}", &format!("{radius}{unit}"));
         let mut sections = vec![
             section("summary", "Summary", &run_words::summary(self, rows)),
-            section(
-                "poses",
-                "Poses",
-                &explorer.replace("{{lacking}}", &on_request(viewer)),
-            ),
+            section("poses", "Poses", &explorer),
         ];
         if self.contacts.is_some() {
             let consensus = include_str!("page/consensus.html");

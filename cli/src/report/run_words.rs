@@ -102,6 +102,9 @@ pub(super) fn summary(report: &RunReport, shown: usize) -> String {
     }
     let answer = touched(report).into_iter().chain([found(report, shown)]);
     let answer: Vec<String> = answer.collect();
+    if let Some(Err(reason)) = report.known {
+        sentences.push(format!("The known complex is not shown: {reason}."));
+    }
     paragraph(&answer) + &next(report) + &paragraph(&sentences) + &warnings(record)
 }
 
@@ -185,8 +188,8 @@ fn found(report: &RunReport, shown: usize) -> String {
     let good: Vec<usize> = (0..shown).filter(is_good).collect();
     let has_native = shown > 0 && report.table.field(0, "capri").is_some();
     match (has_native, good.first()) {
-        (false, _) => "No known complex was given, so nothing here says which pose is right. Of unbound pairs about a third \
-                       have a right one among the first ten clusters: look at all of them, and at what is known of \
+        (false, _) => "No known complex measures the poses, so nothing here says which one is right. Of unbound pairs \
+                       about a third have a right one among the first ten clusters: look at all of them, and at what is known of \
                        the interface."
             .to_owned(),
         (true, None) => "By the known complex no row is acceptable or better.".to_owned(),

@@ -33,14 +33,18 @@ pub(super) fn rounded(value: f64, digits: i32) -> f64 {
 /// A pose: qw, qx, qy, qz, tx, ty, tz.
 pub(super) fn placement(pose: &Pose) -> Vec<f64> {
     let rotation = pose.quaternion().map(|part| rounded(part, 7));
-    let translation = [0, 1, 2].map(|axis| significant(pose.translation[axis]));
+    // Four decimals for a body of 1,000 units.
+    let translation = [0, 1, 2].map(|axis| significant(pose.translation[axis], 8));
     rotation.into_iter().chain(translation).collect()
 }
 
-/// A length with eight digits: four decimals for a body of 1,000 units.
-fn significant(value: f64) -> f64 {
+/// A number with `digits` digits, and all of those before the point.
+pub(super) fn significant(value: f64, digits: i32) -> f64 {
     match value.abs() > 0.0 && value.is_finite() {
-        true => rounded(value, (7 - value.abs().log10().floor() as i32).clamp(0, 15)),
+        true => {
+            let place = value.abs().log10().floor() as i32;
+            rounded(value, (digits - 1 - place).clamp(0, 15))
+        }
         false => value,
     }
 }

@@ -8,11 +8,21 @@ pub(super) mod segments;
 
 use std::collections::HashMap;
 
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::{Atom, Molecule};
+use nalgebra::Point3;
 
 use crate::evaluate::residues::residue::{LINKING_OXYGEN, PHOSPHATE_BOND, PHOSPHORUS, Residue};
 use crate::evaluate::residues::segments::{in_bonded_order, segments};
+
+/// Longest distances in Å from CA to the next CA and from P to the next P: 3.8 and 7 of bonded residues, with room for
+/// poor structures.
+const CA_STEP: f64 = 5.0;
+const P_STEP: f64 = 8.5;
+
+/// Lines through CA, or P of nucleotides, Å. A line ends where the next residue is not bonded.
+pub type Trace = Vec<Vec<[f64; 3]>>;
 
 /// Residues matched as one chain.
 #[derive(Clone, Debug)]
@@ -123,6 +133,29 @@ impl Residues {
                 members: (first..self.residues.len()).collect(),
             });
         }
+    }
+
+    /// The trace of the residues after a motion.
+    pub fn trace(&self, motion: &Pose) -> Trace {
+        let mut lines = Vec::new();
+        for segment in &self.segments {
+            let mut line: Vec<Point3<f64>> = Vec::new();
+            for residue in self.at(&segment.members) {
+                let [ca, p] = [0, PHOSPHORUS].map(|place| residue.backbone[place]);
+                let Some(at) = ca.or(p) else { continue };
+                let longest = if ca.is_some() { CA_STEP } else { P_STEP };
+                let is_bonded = |last: &Point3<f64>| nalgebra::distance(last, &at) < longest;
+                if !line.last().is_none_or(is_bonded) {
+                    lines.push(std::mem::take(&mut line));
+                }
+                line.push(at);
+            }
+            lines.push(line);
+        }
+        lines.retain(|line| line.len() > 1);
+        let moved =
+            |line: Vec<Point3<f64>>| line.iter().map(|&at| motion.apply(at.into())).collect();
+        lines.into_iter().map(moved).collect()
     }
 
     /// Only the given residues of the segments with the given indices, in the order given; a segment keeps its name.

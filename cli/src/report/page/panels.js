@@ -48,6 +48,16 @@ function drawFunnel(data, column, row, axis, name, points, choose) {
   scatter(byId("funnel"), drawn.filter(({ x, y }) => typeof x === "number" && typeof y === "number"), [name, "score"], row, choose);
 }
 
+/** The figures of a cluster, which are hidden if there are none. */
+function drawCluster(figures, isMesh) {
+  const unit = isMesh ? "" : ", Å";
+  const names = [["poses", 0], ["best score", 1], ["mean score", 1], ["standard deviation of scores", 1], [`mean RMSD from the best${unit}`, 2], [`largest RMSD${unit}`, 2]];
+  // Meshes may have any unit.
+  const shown = (value, digits) => shownNumber(isMesh && digits === 2 && value !== null ? String(value) : value, digits);
+  byId("of-cluster").hidden = !figures;
+  if (figures) byId("cluster").replaceChildren(...names.map(([name, digits], place) => make("div", {}, make("dt", {}, name), make("dd", {}, shown(figures[place], digits)))));
+}
+
 const INTERFACE_COLUMNS = [
   { name: "residue", digits: null }, { name: "touches", digits: null }, { name: "distance, Å", digits: 2 },
   { name: "hydrogen bonds", digits: 0 }, { name: "salt bridge", digits: null },

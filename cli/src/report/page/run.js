@@ -10,6 +10,7 @@ async function showRun(data) {
   const show = (selector, on) => document.querySelectorAll(selector).forEach((element) => { element.hidden = !on; });
   show(".of-molecules", !isMesh);
   show(".of-native", column("capri") >= 0);
+  show(".of-overlay", data.overlay !== undefined);
   show(".of-known", !isMesh && data.bodies.some((body) => body.active.length + body.blocked.length > 0));
   const clusters = data.rows.map((row) => row[column("cluster")] ?? null);
   show(".of-clusters", new Set(clusters).size < clusters.length);
@@ -36,6 +37,7 @@ async function showRun(data) {
     drawTerms(data, column, row, choose);
     drawDistribution(data, column, row);
     drawFunnelOf(row);
+    drawCluster(data.clusters?.[clusters[row] - 1], isMesh);
     const rank = data.rows[row][column("rank")];
     let words = `Selected: rank ${rank}, score ${shownNumber(data.rows[row][column("score")], 1)}`;
     if (column("dockq") >= 0) words += `, DockQ ${shownNumber(data.rows[row][column("dockq")], 2)} (${data.rows[row][column("capri")]})`;
@@ -75,7 +77,7 @@ async function showRun(data) {
   const cannot = data.bodies.some((body) => body.format !== "pdb");
   if (cannot && !isMesh) for (const id of ["download", "download-best"]) set(byId(id), { disabled: true, title: "PDB cannot hold these molecules; `knotdock export` writes mmCIF" });
 
-  await withLibrary(["scene", "legend", "zoom-all", "zoom-interface", "show-sticks", "show-known", "colour-by"], () => {
+  await withLibrary(["scene", "legend", "zoom-all", "zoom-interface", "show-sticks", "show-known", "show-overlay", "colour-by"], () => {
     if (data.rows.length === 0) return;
     scene = makeScene(byId("scene"), data);
     wire(scene, data, isMesh);
@@ -112,19 +114,21 @@ function wire(scene, data, isMesh) {
   const on = (id, event, act) => byId(id).addEventListener(event, act);
   on("show-sticks", "change", (event) => scene.style({ sticks: event.target.checked }));
   on("show-known", "change", (event) => scene.style({ known: event.target.checked }));
-  on("colour-by", "change", (event) => { scene.style({ colour: event.target.value }); drawLegend(data, isMesh, event.target.value); });
+  on("show-overlay", "change", (event) => { scene.style({ overlay: event.target.checked }); drawLegend(data, isMesh); });
+  on("colour-by", "change", (event) => { scene.style({ colour: event.target.value }); drawLegend(data, isMesh); });
   on("zoom-interface", "click", () => scene.toInterface());
   on("zoom-all", "click", () => scene.whole());
   turnByKeys(byId("scene"), scene);
-  drawLegend(data, isMesh, "partner");
+  drawLegend(data, isMesh);
 }
 
-function drawLegend(data, isMesh, colour) {
-  const entries = colour === "consensus"
+function drawLegend(data, isMesh) {
+  const entries = byId("colour-by").value === "consensus"
     ? [[shade(0), "touched by no cluster"], [shade(0.5), "by half"], [shade(1), `by all ${data.counted}`]]
     : [[RECEPTOR, data.sides[0]], ...LIGANDS.slice(0, isMesh ? 1 : data.placed[0].length).map((colour) => [colour, data.sides[1]])];
   if (!isMesh && data.bodies.some((body) => body.active.length > 0)) entries.push([KNOWN, "active residues"]);
   if (!isMesh && data.bodies.some((body) => body.blocked.length > 0)) entries.push([BLOCKED, "blocked residues"]);
+  if (byId("show-overlay").checked) entries.push([OVERLAY, "known complex"]);
   byId("legend").replaceChildren(...legend(entries).children);
 }
 

@@ -2,6 +2,7 @@ const RECEPTOR = "#bfbfbf";
 const LIGANDS = ["#e69f00", "#56b4e9", "#009e73", "#cc79a7", "#0072b2", "#d55e00", "#f0e442"];
 const KNOWN = "#cc79a7";
 const BLOCKED = "#000000";
+const OVERLAY = "#009e73";
 // Corners that a mesh of flat triangles may have.
 const MOST_FLAT = 60000;
 
@@ -17,7 +18,7 @@ function makeScene(root, data) {
   const viewer = library.createViewer(root, { backgroundColor: "white", antialias: true, preserveDrawingBuffer: true, disableFog: true });
   const isMesh = data.bodies[0].format === "mesh";
   const copies = Math.max(1, data.placed[0]?.length ?? 1);
-  const choices = { sticks: false, known: true, colour: "partner" };
+  const choices = { sticks: false, known: true, overlay: false, colour: "partner" };
   let row = 0;
   const models = isMesh ? [] : [0, ...Array(copies).fill(1)].map((body) => {
     const { text, format } = data.bodies[body];
@@ -26,6 +27,8 @@ function makeScene(root, data) {
     return { model, body, atoms, start: atoms.map((atom) => [atom.x, atom.y, atom.z]) };
   });
   let shapes = [];
+  let lines = [];
+  let drawn = null;
 
   // Meshes may be of any size: the view is made for some 50 units, about the origin.
   const frame = isMesh ? frameOf(data.bodies.map((body) => body.positions ?? []).find((positions) => positions.length > 0) ?? [0, 0, 0]) : null;
@@ -81,8 +84,19 @@ function makeScene(root, data) {
     return viewer.addCustom({ vertexArr, normalArr, faceArr: triangles, color, opacity });
   }
 
+  /** The known complex that the pose is measured by, as tubes. */
+  function overlay() {
+    const wanted = choices.overlay ? data.overlay.traces[data.overlay.of_row[row]] : [];
+    if (wanted === drawn) return;
+    lines.forEach((line) => viewer.removeShape(line));
+    // The receptor's is thin: it hardly differs from that of the run.
+    lines = wanted.flatMap((side, place) => side.map((flat) => viewer.addCurve({ points: pointsOf(flat), radius: [0.12, 0.4][place], smooth: 4, color: OVERLAY })));
+    drawn = wanted;
+  }
+
   function paint() {
     if (isMesh) return;
+    overlay();
     models.forEach(({ model, body, atoms }, index) => {
       const { residue_of_atom: residueOf, active, blocked } = data.bodies[body];
       const share = choices.colour === "consensus" ? (atom) => shade((data.shares[body][residueOf[atom.index]] ?? 0) / Math.max(data.counted, 1)) : null;
@@ -180,6 +194,11 @@ function frameOf(positions) {
   positions.forEach((part, at) => { low[at % 3] = Math.min(low[at % 3], part); high[at % 3] = Math.max(high[at % 3], part); });
   const size = Math.max(...high.map((part, axis) => part - low[axis]));
   return { middle: low.map((part, axis) => (part + high[axis]) / 2), scale: size > 0 && Number.isFinite(size) ? 50 / size : 1 };
+}
+
+/** Points of a flat list. */
+function pointsOf(flat) {
+  return flat.flatMap((x, at) => at % 3 === 0 ? [{ x, y: flat[at + 1], z: flat[at + 2] }] : []);
 }
 
 /** Pairs of residues in contact in a row: [receptor, ligand, distance in Å, hydrogen bonds, salt bridge]. */
