@@ -2,7 +2,7 @@
 
 import assert from "node:assert/strict";
 import { spawn } from "node:child_process";
-import { mkdtempSync, readFileSync, rmSync } from "node:fs";
+import { mkdirSync, mkdtempSync, readFileSync, rmSync, writeFileSync } from "node:fs";
 import { tmpdir } from "node:os";
 import path from "node:path";
 import { after, test } from "node:test";
@@ -222,6 +222,24 @@ function tooFaint(page) {
     return faint;
   });
 }
+
+test("the models of a folder are conformations of one side", { timeout: 60000 }, async () => {
+  const { server, link } = await serve(0, "models");
+  const { page, faults } = await visit(link);
+  const models = path.join(folder, "prediction");
+  for (const seed of ["seed-1", "seed-2", "seed-10"]) {
+    mkdirSync(path.join(models, seed), { recursive: true });
+    writeFileSync(path.join(models, seed, "model.pdb"), readFileSync(example("ligand")));
+    writeFileSync(path.join(models, seed, "confidences.json"), "{}");
+  }
+  await page.setInputFiles("#ligand input[webkitdirectory]", models);
+  await page.waitForSelector("#ligand [data-key]");
+  assert.match(await page.textContent("#ligand [role=status]"), /^seed-1_model.pdb, and 2 more as conformations/);
+  assert.deepEqual(await page.evaluate(() => window.knotdock.sides.ligand.files), ["seed-1_model.pdb", "seed-2_model.pdb", "seed-10_model.pdb"]);
+  assert.deepEqual(faults, []);
+  await page.close();
+  server.kill("SIGKILL");
+});
 
 test("meshes are shown and dock", { timeout: 120000 }, async () => {
   const { server, link } = await serve(0, "meshes");

@@ -51,7 +51,7 @@ export class Side {
 
   /** Sends files to the server; all but the first are further conformations. */
   async receive(files) {
-    const known = files.filter(({ name }) => files.length === 1 || KNOWN.test(name)).sort((a, b) => a.name.localeCompare(b.name, "en", { numeric: true }));
+    const known = files.filter(({ name }) => files.length === 1 || KNOWN.test(name)).sort((a, b) => placeOf(a).localeCompare(placeOf(b), "en", { numeric: true }));
     if (known.length === 0) {
       if (files.length > 0) this.read.textContent = "There is no structure and no mesh among these files.";
       return;
@@ -63,7 +63,8 @@ export class Side {
       const names = [];
       for (const file of known) {
         this.read.textContent = `Sending ${file.name} …`;
-        const { name } = await ask("PUT", `/api/uploads/${upload}/${encodeURIComponent(file.name)}`, file, "application/octet-stream");
+        // Samples of a predictor have one name in folders of different names.
+        const { name } = await ask("PUT", `/api/uploads/${upload}/${encodeURIComponent(placeOf(file))}`, file, "application/octet-stream");
         names.push(name);
       }
       if (serial === this.serial) await this.load({ upload, files: names, chains: "" });
@@ -224,9 +225,20 @@ export class Side {
   }
 }
 
+/** The path of a file in the folder that was chosen or dropped; its name if it came alone. */
+function placeOf(file) {
+  const path = file.webkitRelativePath || file.droppedPath || file.name;
+  return path.split("/").filter(Boolean).slice(path.includes("/") ? 1 : 0).join("_") || file.name;
+}
+
 /** All files of a dropped entry. */
 async function filesOf(entry) {
-  if (entry.isFile) return [await new Promise((done, failed) => entry.file(done, failed))];
+  if (entry.isFile) {
+    const file = await new Promise((done, failed) => entry.file(done, failed));
+    // A path such as /folder/seed-1/model.cif; of a file that was dropped alone /model.cif.
+    if (entry.fullPath.lastIndexOf("/") > 0) file.droppedPath = entry.fullPath.slice(1);
+    return [file];
+  }
   const reader = entry.createReader();
   const files = [];
   for (;;) {
