@@ -35,7 +35,12 @@ pub struct Serve {
 impl Serve {
     #[cfg(feature = "serve")]
     pub fn run(self, console: Console) -> Result<(), Error> {
-        crate::serve::serve(&self, console)
+        let place = crate::serve::Place {
+            folder: self.folder,
+            port: self.port,
+            host: self.host,
+        };
+        crate::serve::serve(&place, !self.no_browser, console)
     }
 
     #[cfg(not(feature = "serve"))]

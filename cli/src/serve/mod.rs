@@ -12,13 +12,13 @@ mod request;
 
 use std::ffi::OsString;
 use std::net::SocketAddr;
+use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
 use serde_json::json;
 use tokio::net::{TcpListener, lookup_host};
 use tokio::runtime::Builder;
 
-use crate::commands::serve::Serve;
 use crate::messages::console::Console;
 use folder::Folder;
 use guard::Guard;
@@ -42,8 +42,16 @@ struct Server {
     program: Vec<OsString>,
 }
 
+/// Where the runs go, and where the page is.
+pub struct Place {
+    pub folder: PathBuf,
+    pub port: u16,
+    /// Address or name to listen at; this machine alone without it.
+    pub host: Option<String>,
+}
+
 /// Serves until the process ends.
-pub fn serve(arguments: &Serve, console: Console) -> Result<(), Error> {
+pub fn serve(place: &Place, opens_browser: bool, console: Console) -> Result<(), Error> {
     let program = match PROGRAM.get() {
         Some(words) => words.clone(),
         None => vec![std::env::current_exe().map_err(Error::machine)?.into()],
@@ -53,11 +61,11 @@ pub fn serve(arguments: &Serve, console: Console) -> Result<(), Error> {
         .build()
         .map_err(Error::machine)?;
     runtime.block_on(async {
-        let folder = Folder::open(&arguments.folder)?;
-        let host = arguments.host.as_deref().unwrap_or("127.0.0.1");
-        let listener = listen(host, arguments.port).await?;
+        let folder = Folder::open(&place.folder)?;
+        let host = place.host.as_deref().unwrap_or("127.0.0.1");
+        let listener = listen(host, place.port).await?;
         let address = listener.local_addr().map_err(Error::machine)?;
-        let guard = Guard::new(arguments.host.as_deref(), address)?;
+        let guard = Guard::new(place.host.as_deref(), address)?;
         let link = guard.link(host);
         let server = Arc::new(Server {
             jobs: Jobs::recovered(&folder)?,
@@ -67,10 +75,10 @@ pub fn serve(arguments: &Serve, console: Console) -> Result<(), Error> {
         });
         console.say(format!(
             "The page is at {link}\nRuns go to {}. Ctrl-C ends the server.",
-            arguments.folder.display()
+            place.folder.display()
         ));
-        console.result(&json!({ "link": link, "folder": arguments.folder }))?;
-        if !arguments.no_browser && open::that_detached(&link).is_err() {
+        console.result(&json!({ "link": link, "folder": place.folder }))?;
+        if opens_browser && open::that_detached(&link).is_err() {
             console.warn("no browser can be opened here; open the link in one");
         }
         let serving = axum::serve(listener, api::router(Arc::clone(&server)));
