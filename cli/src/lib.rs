@@ -40,6 +40,7 @@ use messages::console::Console;
 pub use messages::console::Listener;
 use messages::shown::shown;
 use messages::suggestions::{self, UTF_8, first_paragraph};
+pub use report::view_page;
 use system_limits::{report_as_json, report_end};
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses,

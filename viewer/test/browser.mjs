@@ -4,6 +4,8 @@ import { chromium } from "playwright-core";
 import { pathToFileURL } from "node:url";
 
 export const EXECUTABLE = process.env.CHROMIUM ?? "/usr/bin/chromium";
+// WebGL without a graphics card, and nothing of the browser's own that asks the network.
+export const ARGUMENTS = ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"];
 
 // One browser a process: starting it takes longer than most tests.
 let started;
@@ -12,8 +14,7 @@ let started;
 export async function open(report, { width = 1280, height = 900 } = {}) {
   started ??= chromium.launch({
     executablePath: EXECUTABLE,
-    // WebGL without a graphics card, and nothing of the browser's own that asks the network.
-    args: ["--no-sandbox", "--use-angle=swiftshader", "--enable-unsafe-swiftshader", "--disable-background-networking", "--disable-component-update", "--disable-sync", "--no-first-run"],
+    args: ARGUMENTS,
   });
   const browser = await started;
   const page = await browser.newPage({ viewport: { width, height } });

@@ -13,6 +13,7 @@ mod shown;
 mod solids;
 mod viewer;
 
+pub use html::view_page;
 pub use knotdock::output::run_contacts::{MAX_ROWS, RunContacts};
 pub use lists::DirectoryKind;
 pub use run::RunReport;
