@@ -133,7 +133,7 @@ class Balls:
     def view(self, *, viewer: str | os.PathLike[str] | None = None) -> View:
         """A three-dimensional view of the largest 2,000 balls; `viewer` as of `Run.view`."""
         largest = np.argsort(-self.radii, kind="stable")[:2000]
-        caption = f"{len(self)} balls" if len(largest) == len(self) else f"The largest {len(largest)} of {len(self)} balls"
+        caption = f"{len(self)} balls" if len(largest) == len(self) else f"The largest 2,000 of {len(self)} balls"
         return View({"balls": np.asarray(self)[largest].tolist()}, caption, viewer)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:

@@ -55,7 +55,8 @@ class Molecule:
         for chain in dict.fromkeys(self.labels["chain"].tolist()):
             of_chain = self.labels["chain"] == chain
             rows.append((chain, len(np.unique(residues[of_chain], axis=0)), int(of_chain.sum())))
-        return table_html(f"Molecule of {len(self)} atoms", ("chain", "residues", "atoms"), rows) + self.view()._repr_html_()
+        table = table_html(f"Molecule of {len(self)} atoms", ("chain", "residues", "atoms"), rows)
+        return table + self.view()._repr_html_()
 
     def view(self, *, viewer: str | os.PathLike[str] | None = None) -> View:
         """A three-dimensional view, each chain in its own colour; `viewer` as of `Run.view`."""

@@ -50,11 +50,17 @@ class Run:
         return f"in {self.directory}"
 
     def _names(self) -> list[str]:
-        """Names of the files of receptor and ligand; of a ring, of its one molecule."""
-        inputs = self.record.get("inputs") or {}
-        files = [inputs.get(side) for side in ("receptor", "ligand")]
-        names = [pathlib.PurePath(file["path"]).name for file in files if file]
-        return list(dict.fromkeys(names)) or ["receptor", "ligand"]
+        """Names of receptor and ligand; of a ring, of its molecule."""
+        record = self.record
+        inputs = record.get("inputs", record)
+        names = []
+        for side in ("receptor", "ligand"):
+            # A list has a file for each conformation.
+            file, *others = inputs[side] if isinstance(inputs[side], list) else [inputs[side]]
+            chains = f":{','.join(file['chains'])}" if file.get("chains") else ""
+            count = f" ({1 + len(others)} conformations)" if others else ""
+            names.append(pathlib.PurePath(file["path"]).name + chains + count)
+        return names[:1] if record["options"]["search"]["symmetry"] else names
 
     def _summary(self) -> str:
         scores = self.scores
@@ -86,8 +92,7 @@ class Run:
             rank: the rank.
             viewer: folder of npm's package 3dmol; by default the library that the package was built with.
         """
-        chains = self.record.get("chains") or []
-        return complex_view(self.complex(rank), self._names(), chains, viewer, f"Rank {rank}")
+        return complex_view(self.complex(rank), self._names(), viewer, f"Rank {rank}")
 
     def plot_scores(self, axes: Any = None) -> Any:
         """Score by rank; poses are coloured by i-RMSD if the run has a known complex.
@@ -107,7 +112,7 @@ class Run:
         axes = pyplot.subplots()[1] if axes is None else axes
         table = self.table("numpy")
         if "irmsd" in table:
-            points = axes.scatter(table["rank"], table["score"], s=12, c=table["irmsd"], cmap="viridis", vmin=0, vmax=20)
+            points = axes.scatter(table["rank"], table["score"], s=12, c=table["irmsd"], vmin=0, vmax=20)
             axes.figure.colorbar(points, ax=axes, label="i-RMSD (Å)", extend="max")
         else:
             axes.scatter(table["rank"], table["score"], s=12)

@@ -6,6 +6,7 @@ import html
 import json
 import os
 import pathlib
+import re
 from collections.abc import Iterable
 from typing import Any
 
@@ -65,29 +66,28 @@ def table_html(caption: str, header: Iterable[str], rows: Iterable[Iterable[Any]
     return f"<p>{html.escape(caption)}</p>\n<table>\n<tr>{head}</tr>\n{body}\n</table>\n"
 
 
-def complex_view(text: str, names: list[str], chains: list[dict[str, str]], viewer: Any, title: str) -> View:
-    """The view of a complex as `knotdock export` writes it.
+def complex_view(text: str, names: list[str], viewer: str | os.PathLike[str] | None, title: str) -> View:
+    """The view of a complex.
 
     Args:
-        text: the file.
-        names: names of receptor and ligand.
-        chains: the entry `chains` of run.json.
+        text: the file as `knotdock export` writes it.
+        names: names of receptor and ligand; of a ring, of its molecule.
         viewer: as of `View`.
         title: beginning of the caption.
     """
-    colours = f"{title}: {names[0]} in grey, {names[-1]} in orange"
-    if "\ng receptor\n" in text:
-        triangles = text.count("\nf ")
-        if triangles > _MAX_TRIANGLES:
-            message = f"the meshes have {triangles} triangles, and a view shows {_MAX_TRIANGLES} at most"
-            raise InputError(message, None, None, "save the run, and open the file of `knotdock export`")
-        place = [[1, 0, 0, 0, 0, 0, 0]]
-        return View({"bodies": _meshes(text), "placed": [place]}, colours, viewer)
+    colours = f"{names[1]} in orange" if len(names) > 1 else "its copies in other colours"
+    caption = f"{title}: {names[0]} in grey, {colours}"
+    triangles = text.count("\nf ")
+    if triangles > _MAX_TRIANGLES:
+        message = f"the meshes have {triangles} triangles, and a view shows {_MAX_TRIANGLES} at most"
+        raise InputError(message, None, None, "open the file of `knotdock export` in a program for meshes")
+    if triangles > 0:
+        return View({"bodies": _meshes(text), "placed": [[[1, 0, 0, 0, 0, 0, 0]]]}, caption, viewer)
     sides: dict[str, list[str]] = {}
-    for chain in chains:
-        sides.setdefault(chain["partner"], []).append(chain["written"])
+    for chain, partner in re.findall(r"chain (\S+) is (receptor|ligand|copy \d+) chain", text):
+        sides.setdefault(partner, []).append(chain)
     data = {"text": text, "sides": list(sides.values()), "sticks": True}
-    return View(data, f"{colours}; residues within 5 Å of the other side as sticks", viewer)
+    return View(data, f"{caption}; residues within 5 Å of the other side as sticks", viewer)
 
 
 def _meshes(text: str) -> list[dict[str, Any]]:

@@ -1,5 +1,7 @@
 """What the cells of notebooks show."""
 
+import html
+import json
 import os
 import pathlib
 import re
@@ -41,6 +43,29 @@ def test_a_run_shows_its_names_its_best_score_and_a_table(run, helices, options)
     assert "in memory" in repr(in_memory) and in_memory._repr_html_().count("<tr>") == shown.count("<tr>")
 
 
+def test_names_and_colours_are_by_chains_conformations_and_copies(helices, options, tmp_path, monkeypatch):
+    monkeypatch.setattr("knotdock._knotdock.view_page", lambda data, package: data)
+
+    def sides(run):
+        return json.loads(run.view(1).page)["sides"]
+
+    in_memory = knotdock.dock(*(knotdock.Molecule.read(file) for file in helices), **options)
+    assert sides(in_memory) == sides(knotdock.dock(*helices, **options)) == [["A", "B"], ["C"]]
+    dimer = str(EXAMPLES / "4e43_dimer.pdb")
+    with pytest.warns(knotdock.KnotdockWarning, match="same molecule"):
+        chains = knotdock.dock(f"{dimer}:A", f"{dimer}:B", **options)
+    assert repr(chains).startswith("<Run of 4e43_dimer.pdb:A and 4e43_dimer.pdb:B: ")
+    ring = knotdock.dock(EXAMPLES / "4e43_molecule.pdb", symmetry="C3", rotations=24)
+    assert repr(ring).startswith("<Run of 4e43_molecule.pdb: ")
+    assert "its copies in other colours" in repr(ring.view(1)) and sides(ring) == [["A"], ["B"], ["C"]]
+    atoms = "".join(line for line in open(helices[1]) if line.startswith(("ATOM", "TER")))
+    models = "".join(f"MODEL     {number:4}\n{atoms}ENDMDL\n" for number in (1, 2))
+    (tmp_path / "models.pdb").write_text(f"{models}END\n")
+    ensemble = knotdock.dock(helices[0], tmp_path / "models.pdb", ligand_models="all", **options)
+    assert " and models.pdb (2 conformations): " in repr(ensemble)
+    assert "<table>" in ensemble._repr_html_() and len(sides(ensemble)) == 2
+
+
 def test_inputs_that_are_gone_leave_the_table(run):
     rank_2 = run.view(2)
     assert "Rank 2" in repr(rank_2)
@@ -72,6 +97,18 @@ def test_a_build_without_the_view_says_how_to_get_it(run, tmp_path, monkeypatch)
         run.view(1, viewer=tmp_path)
 
 
+def test_a_view_is_an_isolated_frame_that_loads_nothing(run, tmp_path):
+    (tmp_path / "build").mkdir()
+    (tmp_path / "build" / "3Dmol-min.js").write_text("")
+    (tmp_path / "LICENSE").write_text("")
+    view = run.view(1, viewer=tmp_path)
+    shown = view._repr_html_()
+    assert "<img" not in shown and '<iframe sandbox="allow-scripts"' in shown
+    assert f'srcdoc="{html.escape(view.page)}"' in shown and "default-src 'none'" in view.page
+    view.save(tmp_path / "view.html")
+    assert (tmp_path / "view.html").read_text() == view.page
+
+
 @needs_library
 @pytest.mark.skipif(not (shutil.which("node") and os.path.exists(CHROMIUM)), reason="there is no browser")
 def test_views_appear_in_a_browser_without_a_network(run, tmp_path):
@@ -83,11 +120,9 @@ def test_views_appear_in_a_browser_without_a_network(run, tmp_path):
         "meshes": meshes.view(1, viewer=LIBRARY),
     }
     for name, view in views.items():
-        shown = view._repr_html_()
-        assert "<img" not in shown and 'sandbox="allow-scripts"' in shown
-        (tmp_path / f"{name}.html").write_text(f"<!DOCTYPE html><meta charset=utf-8><title>cell</title>{shown}")
-        view.save(tmp_path / f"{name}_page.html")
-        assert (tmp_path / f"{name}_page.html").stat().st_size < 400_000
+        assert len(view.page) < 400_000
+        cell = f"<!DOCTYPE html><meta charset=utf-8><title>cell</title>{view._repr_html_()}"
+        (tmp_path / f"{name}.html").write_text(cell)
     script = ROOT / "viewer" / "test" / "cell.mjs"
     done = subprocess.run(
         ["node", script, *(tmp_path / f"{name}.html" for name in views)], capture_output=True, text=True, check=False
