@@ -18,7 +18,7 @@ from knotdock.errors import InputError, KnotdockError
 __all__ = ["View", "complex_view", "table_html"]
 
 _MAX_TRIANGLES = 200_000
-_MISSING = "this build of knotdock has no three-dimensional view"
+_MISSING = "This build of knotdock has no three-dimensional view"
 _REMEDY = "build with the feature `viewer`, or name a folder of npm's package 3dmol: `view(..., viewer=FOLDER)`"
 
 
@@ -59,9 +59,11 @@ def table_html(caption: str, header: Iterable[str], rows: Iterable[Iterable[Any]
     def cell(value: Any) -> str:
         if isinstance(value, float):
             value = "" if np.isnan(value) else f"{value:.0f}" if value.is_integer() else f"{value:.2f}"
-        return f"<td>{html.escape(str(value))}</td>"
+        return f"<td{space}>{html.escape(str(value))}</td>"
 
-    head = "".join(f"<th>{html.escape(name)}</th>" for name in header)
+    # marimo sets no space between columns.
+    space = ' style="padding: 0 0.5em"'
+    head = "".join(f"<th{space}>{html.escape(name)}</th>" for name in header)
     body = "\n".join(f"<tr>{''.join(cell(value) for value in row)}</tr>" for row in rows)
     return f"<p>{html.escape(caption)}</p>\n<table>\n<tr>{head}</tr>\n{body}\n</table>\n"
 

@@ -37,7 +37,8 @@ def test_a_run_shows_its_names_its_best_score_and_a_table(run, helices, options)
     shown = run._repr_html_()
     assert "<img" not in shown and "&lt;img src=x onerror=alert(1)&gt;0.pdb" in shown
     assert shown.count("<tr>") == 1 + min(10, len(run.scores))
-    assert "<th>rank</th><th>score</th>" in shown and f"<td>1</td><td>{run.scores[0]:.2f}</td>" in shown
+    words = re.sub("<[^>]*>", " ", shown).split()
+    assert words.index("score") == words.index("rank") + 1 and f"{run.scores[0]:.2f}" in words
     # Of molecules in memory and of files alike.
     in_memory = knotdock.dock(*(knotdock.Molecule.read(file) for file in helices), **options)
     assert "in memory" in repr(in_memory) and in_memory._repr_html_().count("<tr>") == shown.count("<tr>")
@@ -72,7 +73,7 @@ def test_inputs_that_are_gone_leave_the_table(run):
     for file in pathlib.Path(run.record["inputs"]["receptor"]["path"]).parent.glob("*.pdb"):
         file.unlink()
     shutil.rmtree(run.directory / "top")
-    assert "<td>1</td>" in run._repr_html_()
+    assert run._repr_html_().count("<tr>") > 1
     with pytest.raises(knotdock.InputError):
         run.view(1)
 
@@ -81,7 +82,7 @@ def test_molecules_and_balls_show_a_table_and_a_view():
     molecule = knotdock.Molecule.read(EXAMPLES / "4e43_dimer.pdb")
     shown = molecule._repr_html_()
     assert f"Molecule of {len(molecule)} atoms" in shown and shown.count("<tr>") == 3
-    assert len(re.findall(r"<td>[AB]</td><td>99</td>", shown)) == 2
+    assert len(re.findall(r">[AB]</td><td[^>]*>99</td>", shown)) == 2
     balls = knotdock.sample(TETRAHEDRON, grid="2^12")
     assert f"{len(balls)} balls" in balls._repr_html_() and balls._repr_html_().count("<tr>") == 4
 
