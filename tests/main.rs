@@ -47,6 +47,8 @@ mod rings;
 mod sample;
 mod score;
 mod scoring_table;
+#[cfg(feature = "serve")]
+mod serve;
 mod sharp_fits;
 mod tradeoff;
 mod views;

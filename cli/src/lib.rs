@@ -14,6 +14,8 @@ pub mod plot;
 pub mod records;
 mod refining;
 mod report;
+#[cfg(feature = "serve")]
+mod serve;
 mod shards;
 mod solid_files;
 pub mod system_limits;
@@ -41,6 +43,8 @@ pub use messages::console::Listener;
 use messages::shown::shown;
 use messages::suggestions::{self, UTF_8, first_paragraph};
 pub use report::view_page;
+#[cfg(feature = "serve")]
+pub use serve::start_by;
 use system_limits::{report_as_json, report_end};
 
 /// Docks two structures or two meshes by correlating their spherical decompositions, evaluates and writes the poses,
@@ -62,6 +66,7 @@ enum Command {
     Dock(Box<commands::dock::Dock>),
     Batch(commands::batch::Batch),
     Merge(commands::merge::Merge),
+    Serve(commands::serve::Serve),
     Export(commands::export::Export),
     Refine(commands::refine::Refine),
     Evaluate(Box<commands::evaluate::Evaluate>),
@@ -85,7 +90,7 @@ enum Command {
 
 /// The commands that `knotdock --help` lists, by subject.
 const SUBJECTS: [(&str, &[&str]); 4] = [
-    ("Docking", &["dock", "batch", "merge"]),
+    ("Docking", &["dock", "batch", "merge", "serve"]),
     (
         "Results",
         &[
@@ -103,8 +108,9 @@ const SUBJECTS: [(&str, &[&str]); 4] = [
 ];
 
 /// Features that the program may be built with, and whether it was.
-const FEATURES: [(&str, bool); 2] = [
+const FEATURES: [(&str, bool); 3] = [
     ("gpu", cfg!(feature = "gpu")),
+    ("serve", cfg!(feature = "serve")),
     ("viewer", cfg!(feature = "viewer")),
 ];
 
@@ -157,6 +163,7 @@ fn run(command: Command, console: Console) -> Result<u8, Error> {
         Command::Dock(command) => command.run(console),
         Command::Batch(command) => return command.run(console),
         Command::Merge(command) => command.run(console),
+        Command::Serve(command) => command.run(console),
         Command::Export(command) => command.run(console),
         Command::Refine(command) => command.run(console),
         Command::Evaluate(command) => return command.run(console),
@@ -182,7 +189,7 @@ fn wants_json(arguments: &[OsString]) -> bool {
     arguments
         .iter()
         .take_while(|argument| *argument != "--")
-        .any(|argument| argument == "--json")
+        .any(|argument| argument == "--json" || argument == "--events")
 }
 
 fn command_line() -> clap::Command {

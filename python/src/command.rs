@@ -189,6 +189,11 @@ fn tell(listener: &Bound<'_, PyAny>, events: &Events, result: &mut Option<String
 pub fn main(py: Python<'_>, arguments: &Bound<'_, PyList>) -> PyResult<u8> {
     let arguments: Vec<OsString> = arguments.extract()?;
     knotdock_cli::system_limits::fail_at_file_size();
+    #[cfg(feature = "serve")]
+    {
+        let python: OsString = py.import("sys")?.getattr("executable")?.extract()?;
+        knotdock_cli::start_by(vec![python, "-m".into(), "knotdock".into()]);
+    }
     Ok(py.detach(|| knotdock_cli::main(arguments)))
 }
 

@@ -3,17 +3,11 @@
 //     node cell.mjs PAGE...
 
 import assert from "node:assert/strict";
-import { chromium } from "playwright-core";
 import { pathToFileURL } from "node:url";
-import { ARGUMENTS, EXECUTABLE } from "./browser.mjs";
+import { end, newPage } from "./browser.mjs";
 
-const browser = await chromium.launch({ executablePath: EXECUTABLE, args: ARGUMENTS });
 for (const name of process.argv.slice(2)) {
-  const page = await browser.newPage({ viewport: { width: 900, height: 700 } });
-  const faults = [];
-  page.on("console", (message) => { if (["error", "warning"].includes(message.type())) faults.push(message.text()); });
-  page.on("pageerror", (error) => faults.push(String(error)));
-  page.on("request", (request) => { if (!/^(data|blob|about):/.test(request.url())) faults.push(request.url()); });
+  const { page, faults, requests, close } = await newPage();
   const address = pathToFileURL(name).href;
   await page.goto(address);
   const frame = page.frames()[1];
@@ -29,8 +23,7 @@ for (const name of process.argv.slice(2)) {
     return new Set(new Uint32Array(context.getImageData(0, 0, image.width, image.height).data.buffer)).size;
   });
   assert.ok(colours > 20, `${name}: ${colours} colours`);
-  assert.deepEqual(faults, [address], name);
-  if (process.env.PICTURES) await page.screenshot({ path: `${name}.png` });
-  await page.close();
+  assert.deepEqual([faults, requests.filter((request) => request !== "about:srcdoc")], [[], [address]], name);
+  await close();
 }
-await browser.close();
+await end();

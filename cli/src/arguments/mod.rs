@@ -9,7 +9,8 @@ pub mod solid_output;
 
 use clap::{Args, Command};
 
-use crate::messages::console::Console;
+use crate::messages::console::{Console, Listener};
+use crate::messages::event_lines::EventLines;
 
 /// Options of the whole program.
 #[derive(Args, Clone, Copy, Debug)]
@@ -23,15 +24,19 @@ pub struct ProgramArguments {
     /// Print more detail.
     #[arg(short, long, global = true)]
     verbose: bool,
+    /// Write messages, progress and the result as lines of JSON, and end when standard input does.
+    #[arg(long, global = true, hide = true, conflicts_with_all = ["json", "quiet"])]
+    events: bool,
 }
 
 impl From<ProgramArguments> for Console<'_> {
     fn from(arguments: ProgramArguments) -> Self {
         Self {
-            json: arguments.json,
+            // A command line that is wrong is reported in JSON, too.
+            json: arguments.json || arguments.events,
             quiet: arguments.quiet,
             verbose: arguments.verbose,
-            listener: None,
+            listener: (arguments.events).then(|| EventLines::of_process() as &dyn Listener),
         }
     }
 }

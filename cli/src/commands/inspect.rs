@@ -8,9 +8,11 @@ use serde_json::{Map, Value, json};
 use crate::arguments::options::{OfInspect, OptionArguments};
 use crate::arguments::output_file::check_outputs;
 use crate::inputs::molecules::Input;
+use crate::inputs::solids::{ShapeInput, is_shape};
 use crate::messages::console::Console;
 use crate::messages::dock::{counted_names, metal_bound, termini_text};
 use crate::records::joined;
+use crate::report::shown_surface;
 use crate::tables::report::counted;
 use crate::tables::{Column, write_table};
 use knotdock::output::files::complexes::{format_of_name, write_kept_atoms};
@@ -21,16 +23,17 @@ use knotdock_scoring::terms::pose::TermDefinition;
 use knotdock_structures::Error;
 use knotdock_structures::ball_union::{Volume, union_volume};
 use knotdock_structures::molecule::{
-    AtomFate, DropKind, Format, InputSpec, LabelReport, Molecule, Termini, UnresolvedResidues, fits,
+    Atom, AtomFate, DropKind, Format, InputSpec, LabelReport, Molecule, Termini,
+    UnresolvedResidues, fits, one_letter,
 };
 
 /// Say what would be read of a structure: chains, residues and atoms kept, dropped and altered, gaps, and charges
-/// assumed.
+/// assumed; of a mesh, its triangles and whether they close.
 #[derive(Args, Debug)]
 #[command(group = ArgGroup::new("written").args(["atoms", "write"]).multiple(true))]
 pub struct Inspect {
     /// The structure: .pdb, .ent or .cif, each also .gz; FILE:H,L picks chains by the author's names, FILE:H:1-120,L
-    /// residues too.
+    /// residues too. Or a mesh.
     #[arg(value_name = "FILE")]
     file: String,
     /// Write every atom of the model to this CSV file, kept or dropped, with the reason.
@@ -56,7 +59,14 @@ impl Inspect {
         let options = self.options.given()?.options;
         let reading = options.input.reading();
         let ph = options.terms.ph;
-        let structure = InputSpec::parse(&self.file)?.path;
+        let spec = InputSpec::parse(&self.file)?;
+        if is_shape(&spec.path) && self.atoms.is_none() && self.write.is_none() {
+            let shape = ShapeInput::read(&spec)?;
+            shape.file.describe("Solid", console);
+            let surface = shown_surface(&shape.surface());
+            return console.result(&json!({ "input": shape.entry(None), "surface": surface }));
+        }
+        let structure = spec.path;
         let files = [&self.atoms, &self.write].into_iter().flatten();
         check_outputs(files, &[&structure], self.force, console)?;
         let format = self.write.as_deref().map(written_format).transpose()?;
@@ -133,8 +143,9 @@ impl Inspection {
     fn entries(self, input: &Input) -> Result<Value, Error> {
         let findings = PRIORS.iter().zip(self.findings);
         let findings = findings.map(|(prior, found)| (prior.entry_name().to_owned(), found.entry));
+        let chains = chains_entry(&input.molecule.atoms);
         Ok(joined([
-            json!({ "input": input.entry()?, "labels": self.labels }),
+            json!({ "input": input.entry()?, "chains": chains, "labels": self.labels }),
             Value::Object(findings.collect()),
             json!({
                 "unresolved_residues": self.unresolved,
@@ -146,6 +157,29 @@ impl Inspection {
             }),
         ]))
     }
+}
+
+/// Chains in the order of the file, each with its residues.
+fn chains_entry(atoms: &[Atom]) -> Value {
+    let place = |atom: &Atom| (atom.chain.clone(), atom.residue_number, atom.insertion_code);
+    let mut chains: Vec<(&str, Vec<Value>)> = Vec::new();
+    for residue in atoms.chunk_by(|a, b| place(a) == place(b)) {
+        let first = &residue[0];
+        let insertion = first.insertion_code.map(String::from).unwrap_or_default();
+        let entry = json!({
+            "number": format!("{}{insertion}", first.residue_number),
+            "name": first.residue_name,
+            "letter": one_letter(&first.residue_name),
+        });
+        match chains.iter_mut().find(|(name, _)| *name == first.chain) {
+            Some((_, residues)) => residues.push(entry),
+            None => chains.push((&first.chain, vec![entry])),
+        }
+    }
+    let chains = chains.into_iter();
+    chains
+        .map(|(name, residues)| json!({ "chain": name, "residues": residues }))
+        .collect()
 }
 
 fn counts_entry(counts: &[(&TermDefinition, usize)]) -> Map<String, Value> {

@@ -17,4 +17,5 @@ pub mod report;
 pub mod sample;
 pub mod score;
 pub mod se3;
+pub mod serve;
 pub mod tradeoff;

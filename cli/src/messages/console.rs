@@ -202,7 +202,7 @@ fn written(stream: &mut dyn Write, text: &str) -> io::Result<()> {
 }
 
 /// Writes a line. Failures, such as a closed pipe, are not reported.
-fn write_line(stream: &mut dyn Write, text: &str) {
+pub(super) fn write_line(stream: &mut dyn Write, text: &str) {
     let _ = written(stream, text);
 }
 

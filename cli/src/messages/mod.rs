@@ -2,5 +2,6 @@
 
 pub mod console;
 pub mod dock;
+pub mod event_lines;
 pub mod shown;
 pub mod suggestions;

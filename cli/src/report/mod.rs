@@ -17,5 +17,8 @@ pub use html::view_page;
 pub use knotdock::output::run_contacts::{MAX_ROWS, RunContacts};
 pub use lists::DirectoryKind;
 pub use run::RunReport;
+pub use shown::solid as shown_surface;
 pub use solids::SolidsReport;
+#[cfg(feature = "serve")]
+pub use viewer::{ADDRESS as LIBRARY_ADDRESS, INTEGRITY as LIBRARY_INTEGRITY};
 pub use viewer::{Viewer, ViewerArguments};

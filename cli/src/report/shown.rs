@@ -46,7 +46,7 @@ fn significant(value: f64) -> f64 {
 }
 
 /// A surface, flat; without triangles if it has too many to be shown.
-pub(super) fn solid(surface: &Surface) -> Value {
+pub fn solid(surface: &Surface) -> Value {
     let count = surface.triangles.len();
     if count > MAX_TRIANGLES {
         return json!({ "format": "mesh", "triangle_count": count });

@@ -15,9 +15,10 @@ use knotdock::output::files::file_error;
 use knotdock_structures::Error;
 
 /// Address of the library, for reports of builds without it; the version is that of viewer/package-lock.json.
-pub(super) const ADDRESS: &str = "https://cdn.jsdelivr.net/npm/3dmol@2.5.5/build/3Dmol-min.js";
+pub const ADDRESS: &str = "https://cdn.jsdelivr.net/npm/3dmol@2.5.5/build/3Dmol-min.js";
 /// SHA-384 of the library, which a browser checks before it runs it.
-const INTEGRITY: &str = "sha384-OsczYbldvrHgslr9fFp/i4GiLSeuw9l+QIlv99ITw8soOwXcoGeflFMLg+CU/X1d";
+pub const INTEGRITY: &str =
+    "sha384-OsczYbldvrHgslr9fFp/i4GiLSeuw9l+QIlv99ITw8soOwXcoGeflFMLg+CU/X1d";
 
 /// What stands in place of the view of a page without the library: nothing is loaded before the button is pressed.
 pub(super) fn on_request(viewer: Option<&Viewer>) -> String {
@@ -70,6 +71,13 @@ impl Viewer {
     pub fn embedded() -> Option<&'static Self> {
         static EMBEDDED: OnceLock<Option<Viewer>> = OnceLock::new();
         EMBEDDED.get_or_init(embedded).as_ref()
+    }
+
+    /// The library as gzip.
+    #[cfg(feature = "serve")]
+    pub fn gzip(&self) -> Vec<u8> {
+        // It was encoded here.
+        STANDARD.decode(&self.packed).unwrap_or_default()
     }
 
     /// The library in the folder of npm's package.
