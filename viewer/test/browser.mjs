@@ -4,6 +4,7 @@ import { chromium } from "playwright-core";
 import { pathToFileURL } from "node:url";
 
 export const EXECUTABLE = process.env.CHROMIUM ?? "/usr/bin/chromium";
+
 // One browser a process: starting it takes longer than most tests.
 let started;
 
