@@ -1,7 +1,8 @@
 #!/usr/bin/env bash
 # Checks of the Python package and of the book, by Python in a virtual environment of its own under target/: the
-# package's tests, types and README, the commands of the book, and the recipes for clusters. Needs python3 (3.11 or later) with venv; the recipes need Slurm, for which Debian's
-# slurm-wlm and munge are started as root, and are left out elsewhere.
+# package's tests, types and README, the notebook and the commands of the book, and the recipes for clusters. Needs
+# python3 (3.11 or later) with venv; the recipes need Slurm, for which Debian's slurm-wlm and munge are started as root,
+# and are left out elsewhere.
 #
 #     scripts/python_checks.sh              the package as the tests' profile builds it, put together in a folder
 #     scripts/python_checks.sh --wheel      the wheel, built by maturin with all optimisations and installed by pip
@@ -59,6 +60,7 @@ package_tests() {
     pytest --quiet --config-file /dev/null -p no:cacheprovider --doctest-modules --pyargs knotdock
     mypy --no-error-summary --ignore-missing-imports "$package"
 }
+notebook() { jupyter execute "$root"/docs/guides/*.ipynb; }
 # The commands of the book are run, and its reference must be that of the program.
 book() {
     python "$root/scripts/checks/check_book.py" "$program"
@@ -72,4 +74,4 @@ clusters() {
     fi
 }
 # They wait for programs that they start.
-side_by_side package_tests book clusters
+side_by_side package_tests notebook book clusters

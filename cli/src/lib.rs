@@ -42,6 +42,7 @@ use messages::console::Console;
 pub use messages::console::Listener;
 use messages::shown::shown;
 use messages::suggestions::{self, UTF_8, first_paragraph};
+pub use report::view_page;
 #[cfg(feature = "serve")]
 pub use serve::start_by;
 use system_limits::{report_as_json, report_end};

@@ -8,7 +8,7 @@
 `dock` docks two structures; `Run` opens what a run left. `batch`, `merge` and `screen` are for many pairs. `score`,
 `evaluate`, `interface`, `inspect`, `sample`, `collide`, `obstacle` and `morph` are the other commands. `Molecule` reads
 structures into arrays, and `Correlator` correlates balls with weights of one's own. `run_command` runs any command by
-its name.
+its name. In a notebook, runs, molecules and balls show a table and a `View`.
 """
 
 from knotdock._knotdock import Correlator, options, version
@@ -32,6 +32,7 @@ from knotdock.molecule import Molecule
 from knotdock.run import Run
 from knotdock.screening import screen
 from knotdock.tables import iterate_poses, read_poses, read_results, read_table
+from knotdock.view import View
 
 __version__ = version().split()[0]
 
@@ -43,6 +44,7 @@ __all__ = [
     "KnotdockWarning",
     "Molecule",
     "Run",
+    "View",
     "batch",
     "collide",
     "dock",

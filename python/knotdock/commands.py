@@ -111,7 +111,7 @@ def run_command(
     Args:
         command: its name, as on the command line.
         arguments: files and other arguments without a name.
-        progress: whether a progress bar is shown (tqdm); by default where a terminal or a notebook is there to see it.
+        progress: whether a progress bar is shown; by default in notebooks, and in terminals if tqdm is installed.
         after: words for behind a `--`, as `knotdock batch` takes them.
         options: the command's options; see `words_of`.
 

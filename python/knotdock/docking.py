@@ -43,7 +43,7 @@ def dock(
             of `Molecule` are docked in memory: no file is written, and `output` is left out.
         ligand: what moves, likewise; none with `symmetry`.
         output: directory of the run; by default a temporary one, which goes with the run unless it is saved.
-        progress: whether a progress bar is shown; by default where a terminal or a notebook is there to see it.
+        progress: whether a progress bar is shown; by default in notebooks, and in terminals if tqdm is installed.
 
     Returns:
         The run. Its table has the same bytes as that of `knotdock dock` with the same options.

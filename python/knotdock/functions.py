@@ -13,6 +13,7 @@ import numpy as np
 from knotdock.commands import run_command
 from knotdock.inputs import given
 from knotdock.tables import read_table
+from knotdock.view import View, table_html
 
 __all__ = [
     "Balls",
@@ -122,6 +123,18 @@ class Balls:
 
     def __repr__(self) -> str:
         return f"<{len(self)} balls>"
+
+    def _repr_html_(self) -> str:
+        """Size and place as a table, and the view."""
+        low, high = (self.centers - self.radii[:, None]).min(0), (self.centers + self.radii[:, None]).max(0)
+        rows = [(axis, *ends) for axis, *ends in zip("xyz", low.tolist(), high.tolist(), strict=True)]
+        return table_html(f"{len(self)} balls", ("axis", "from", "to"), rows) + self.view()._repr_html_()
+
+    def view(self, *, viewer: str | os.PathLike[str] | None = None) -> View:
+        """A three-dimensional view of the largest 2,000 balls; `viewer` as of `Run.view`."""
+        largest = np.argsort(-self.radii, kind="stable")[:2000]
+        caption = f"{len(self)} balls" if len(largest) == len(self) else f"The largest 2,000 of {len(self)} balls"
+        return View({"balls": np.asarray(self)[largest].tolist()}, caption, viewer)
 
     def __array__(self, dtype: Any = None, copy: bool | None = None) -> np.ndarray:
         return np.column_stack([self.centers, self.radii]).astype(dtype or float)

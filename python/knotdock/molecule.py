@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import pathlib
 import tempfile
 from typing import Any
@@ -11,6 +12,7 @@ import numpy as np
 from knotdock import _knotdock
 from knotdock.commands import words_of
 from knotdock.inputs import given
+from knotdock.view import View, table_html
 
 __all__ = ["Molecule"]
 
@@ -45,6 +47,20 @@ class Molecule:
 
     def __repr__(self) -> str:
         return f"<Molecule of {len(self)} atoms>"
+
+    def _repr_html_(self) -> str:
+        """The chains as a table, and the view."""
+        residues = np.stack([self.labels[name].astype(str) for name in ("residue_number", "insertion_code")], axis=1)
+        rows = []
+        for chain in dict.fromkeys(self.labels["chain"].tolist()):
+            of_chain = self.labels["chain"] == chain
+            rows.append((chain, len(np.unique(residues[of_chain], axis=0)), int(of_chain.sum())))
+        table = table_html(f"Molecule of {len(self)} atoms", ("chain", "residues", "atoms"), rows)
+        return table + self.view()._repr_html_()
+
+    def view(self, *, viewer: str | os.PathLike[str] | None = None) -> View:
+        """A three-dimensional view, each chain in its own colour; `viewer` as of `Run.view`."""
+        return View({"text": self._inner.text}, f"{len(self)} atoms, coloured by chain", viewer)
 
     @property
     def atoms(self) -> np.ndarray:

@@ -1,40 +1,92 @@
-"""A progress bar by tqdm, where it is installed and someone is there to see it."""
+"""A progress bar: HTML in Jupyter, marimo's own in marimo, tqdm in a terminal if it is installed."""
 
 from __future__ import annotations
 
+import html
 import sys
+import time
 from typing import Any
 
 __all__ = ["ProgressBar"]
 
 
-def _is_seen() -> bool:
-    if sys.stderr is not None and sys.stderr.isatty():
-        return True
-    # A notebook has no terminal, and shows bars all the same.
-    return "ipykernel" in sys.modules
+class _JupyterBar:
+    """A bar in the output of a cell, for every front end of Jupyter."""
+
+    def __init__(self, name: str, total: int) -> None:
+        from IPython.display import HTML, display
+
+        self._html, self._name, self._total = HTML, name, total
+        self._done, self._next = 0, 0.0
+        self._handle: Any = display(HTML(self._text()), display_id=True)
+
+    def _text(self) -> str:
+        done = f'<progress value="{self._done}" max="{self._total}"></progress> {self._done}/{self._total}'
+        return f"{html.escape(self._name)} {done}"
+
+    def update(self, steps: int) -> None:
+        self._done += steps
+        # Ten updates per second at most.
+        if time.monotonic() >= self._next:
+            self._next = time.monotonic() + 0.1
+            self._handle.update(self._html(self._text()))
+
+    def close(self) -> None:
+        self._handle.update(self._html(""))
+
+
+class _MarimoBar:
+    def __init__(self, name: str, total: int) -> None:
+        import marimo
+
+        self._context = marimo.status.progress_bar(total=total, title=name, remove_on_exit=True)
+        self._bar = self._context.__enter__()
+
+    def update(self, steps: int) -> None:
+        self._bar.update(steps)
+
+    def close(self) -> None:
+        self._context.__exit__(None, None, None)
+
+
+def _tqdm(name: str, total: int) -> Any:
+    from tqdm import tqdm
+
+    return tqdm(total=total, desc=name, leave=False)
+
+
+def _kind(shown: bool | None) -> Any:
+    """The bar that can be seen here, or None."""
+    if shown is False:
+        return None
+    marimo, ipython = sys.modules.get("marimo"), sys.modules.get("IPython")
+    if marimo is not None and marimo.running_in_notebook():
+        return _MarimoBar
+    if ipython is not None and hasattr(ipython.get_ipython(), "kernel"):
+        return _JupyterBar
+    if not shown and (sys.stderr is None or not sys.stderr.isatty()):
+        return None
+    try:
+        import tqdm  # noqa: F401
+    except ImportError:
+        if shown:
+            raise
+        return None
+    return _tqdm
 
 
 class ProgressBar:
     """The stages of a command, one bar after another."""
 
     def __init__(self, shown: bool | None) -> None:
-        self._tqdm: Any = None
+        self._kind = _kind(shown)
         self._bar: Any = None
-        if shown or (shown is None and _is_seen()):
-            try:
-                from tqdm.auto import tqdm
-            except ImportError:
-                if shown:
-                    raise
-                return
-            self._tqdm = tqdm
 
     def stage(self, name: str, total: int) -> None:
         """Begin a stage of `total` steps."""
         self.close()
-        if self._tqdm is not None:
-            self._bar = self._tqdm(total=total, desc=name, leave=False)
+        if self._kind is not None:
+            self._bar = self._kind(name, total)
 
     def advance(self, steps: int) -> None:
         """Note the number of further steps that are done."""

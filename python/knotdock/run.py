@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import html
 import io
 import json
 import os
@@ -14,11 +15,15 @@ import numpy as np
 
 from knotdock import _knotdock
 from knotdock.commands import run_command
-from knotdock.errors import InputError
+from knotdock.errors import InputError, KnotdockError
 from knotdock.inputs import given
 from knotdock.tables import Frame, read_table
+from knotdock.view import View, complex_view, table_html
 
 __all__ = ["MemoryRun", "Run"]
+
+# Columns of the table in a notebook's cell.
+_SHOWN = ("rank", "score", "cluster_size", "z_score", "pose_score", "irmsd", "lrmsd", "dockq", "capri")
 
 
 class Run:
@@ -41,8 +46,78 @@ class Run:
             message = "this is no directory of a run: it has no poses.csv"
             raise InputError(message, str(directory), None, "name the directory that `knotdock dock` wrote with -o")
 
+    def _place(self) -> str:
+        return f"in {self.directory}"
+
+    def _names(self) -> list[str]:
+        """Names of receptor and ligand; of a ring, of its molecule."""
+        record = self.record
+        inputs = record.get("inputs", record)
+        names = []
+        for side in ("receptor", "ligand"):
+            # A list has a file for each conformation.
+            file, *others = inputs[side] if isinstance(inputs[side], list) else [inputs[side]]
+            chains = f":{','.join(file['chains'])}" if file.get("chains") else ""
+            count = f" ({1 + len(others)} conformations)" if others else ""
+            names.append(pathlib.PurePath(file["path"]).name + chains + count)
+        return names[:1] if record["options"]["search"]["symmetry"] else names
+
+    def _summary(self) -> str:
+        scores = self.scores
+        best = f", best score {scores[0]:.1f}" if len(scores) else ""
+        return f"Run of {' and '.join(self._names())}: {len(scores)} poses{best}"
+
     def __repr__(self) -> str:
-        return f"<Run of {len(self.scores)} poses in {self.directory}>"
+        return f"<{self._summary()}, {self._place()}>"
+
+    def _repr_html_(self) -> str:
+        """The best poses as a table, and the view of rank 1."""
+        table = self.table("numpy")
+        names = [name for name in _SHOWN if name in table]
+        rows = list(zip(*(table[name][:10].tolist() for name in names), strict=True))
+        caption = f"{self._summary()}. The first {len(rows)}:"
+        return table_html(caption, names, rows) + (self._view_html() if rows else "")
+
+    def _view_html(self) -> str:
+        try:
+            return self.view(1)._repr_html_()
+        except KnotdockError as error:
+            # Such as inputs that are gone.
+            return f"<p>{html.escape(str(error))}</p>\n"
+
+    def view(self, rank: int = 1, *, viewer: str | os.PathLike[str] | None = None) -> View:
+        """A three-dimensional view of the complex of a rank, from 1, as `complex` gives it.
+
+        Args:
+            rank: the rank.
+            viewer: folder of npm's package 3dmol; by default the library that the package was built with.
+        """
+        return complex_view(self.complex(rank), self._names(), viewer, f"Rank {rank}")
+
+    def plot_scores(self, axes: Any = None) -> Any:
+        """Score by rank; poses are coloured by i-RMSD if the run has a known complex.
+
+        Args:
+            axes: Axes of Matplotlib to draw into; by default new ones.
+
+        Returns:
+            The Axes.
+        """
+        try:
+            from matplotlib import pyplot
+        except ImportError as error:
+            message = "plot_scores needs Matplotlib: pip install 'knotdock[plot]'"
+            raise ImportError(message) from error
+
+        axes = pyplot.subplots()[1] if axes is None else axes
+        table = self.table("numpy")
+        if "irmsd" in table:
+            points = axes.scatter(table["rank"], table["score"], s=12, c=table["irmsd"], vmin=0, vmax=20)
+            axes.figure.colorbar(points, ax=axes, label="i-RMSD (Å)", extend="max")
+        else:
+            axes.scatter(table["rank"], table["score"], s=12)
+        axes.set(xlabel="rank", ylabel="score", title=" and ".join(self._names()))
+        return axes
 
     def table(self, frame: Frame = "pandas") -> Any:
         """The table of poses, best first: one row per cluster, or one row per pose with `no_cluster`.
@@ -132,8 +207,8 @@ class MemoryRun(Run):
         self._inner = inner
         self._table = inner.table()
 
-    def __repr__(self) -> str:
-        return f"<Run of {len(self.scores)} poses in memory>"
+    def _place(self) -> str:
+        return "in memory"
 
     def table(self, frame: Frame = "pandas") -> Any:
         """The table of poses, best first; see `Run.table`."""

@@ -197,6 +197,13 @@ pub fn main(py: Python<'_>, arguments: &Bound<'_, PyList>) -> PyResult<u8> {
     Ok(py.detach(|| knotdock_cli::main(arguments)))
 }
 
+/// A page that holds a view and nothing else, or None in a build without the library of the view. `data` is the JSON text
+/// that cli/src/report/page/view.js reads, `package` a folder of npm's package 3dmol.
+#[pyfunction]
+pub fn view_page(py: Python<'_>, data: &str, package: Option<PathBuf>) -> PyResult<Option<String>> {
+    knotdock_cli::view_page(data, package).map_err(|error| exception(py, &error))
+}
+
 /// Version and commit.
 #[pyfunction]
 pub fn version() -> &'static str {

@@ -20,7 +20,7 @@ static ALLOCATOR: knotdock_cli::system_limits::ReportingAllocator =
 #[pymodule]
 mod _knotdock {
     #[pymodule_export]
-    use super::command::{add, call, main, version};
+    use super::command::{add, call, main, version, view_page};
     #[pymodule_export]
     use super::correlator::Correlator;
     #[pymodule_export]

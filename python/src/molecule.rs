@@ -7,7 +7,7 @@ use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
 use crate::failure::exception;
-use knotdock_structures::molecule::{Atom, Molecule as Inner};
+use knotdock_structures::molecule::{Atom, Format, Molecule as Inner, fits, write_renamed};
 
 /// A molecule as knotdock reads it: the atoms that are docked.
 #[pyclass(frozen, module = "knotdock._knotdock")]
@@ -34,6 +34,18 @@ impl Molecule {
     #[getter]
     fn report(&self) -> String {
         self.0.report.to_string()
+    }
+
+    /// The text of a PDB file, or mmCIF if PDB cannot hold it.
+    #[getter]
+    fn text(&self) -> PyResult<String> {
+        let format = match fits(Format::Pdb, &self.0) {
+            Ok(()) => Format::Pdb,
+            Err(_) => Format::Mmcif,
+        };
+        let mut text = Vec::new();
+        write_renamed(&mut text, format, &self.0, &[])?;
+        Ok(String::from_utf8_lossy(&text).into_owned())
     }
 
     /// Coordinates in Å, (n, 3).

@@ -2,17 +2,19 @@
 
 use std::fmt::Write as _;
 use std::io::{BufReader, Read as _};
+use std::path::PathBuf;
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use flate2::read::GzDecoder;
 use serde_json::Value;
 
-use crate::report::viewer::{ADDRESS, Viewer, packed};
+use crate::report::viewer::{ADDRESS, Viewer, ViewerArguments, packed};
 use knotdock::output::files::seal::{BEGINNING, sealed};
 use knotdock::output::records::program::VERSION_WITH_COMMIT;
+use knotdock_structures::Error;
 
-/// The scripts, in the order in which each uses those before it.
+/// The scripts of a report, in the order in which each uses those before it.
 const SCRIPTS: [&str; 10] = [
     include_str!("page/packed.js"),
     include_str!("page/table.js"),
@@ -72,19 +74,55 @@ impl Page<'_> {
                 None => "",
             }
         );
-        text += &script("data", &packed(self.data.to_string().as_bytes()));
-        if let Some(viewer) = self.viewer {
-            let licence = viewer.licence.replace("--", "- -");
-            let _ = write!(text, "<!--\n{licence}\n-->\n");
-            text += &script("viewer", &viewer.packed);
-        }
-        text += "<script>\n\"use strict\";\n(() => {\n";
-        for script in SCRIPTS {
-            text += script;
-        }
-        text += "})();\n</script>\n</body>\n</html>\n";
+        text += &scripts(&self.data.to_string(), self.viewer, &SCRIPTS);
+        text += "</body>\n</html>\n";
         sealed(text)
     }
+}
+
+/// The scripts of a view alone.
+const VIEW_SCRIPTS: [&str; 5] = [
+    include_str!("page/packed.js"),
+    include_str!("page/geometry.js"),
+    include_str!("page/scene.js"),
+    include_str!("page/view.js"),
+    "unpacked(\"data\").then((text) => showView(JSON.parse(text)));\n",
+];
+
+/// A page that holds a view and nothing else, as notebooks show it; `None` without the library of the view.
+///
+/// `data` is the JSON text that page/view.js reads, `package` a folder of npm's package 3dmol.
+///
+/// # Errors
+/// [`Error`] if the folder does not hold the library.
+pub fn view_page(data: &str, package: Option<PathBuf>) -> Result<Option<String>, Error> {
+    let Some(viewer) = (ViewerArguments { viewer: package }).read()? else {
+        return Ok(None);
+    };
+    Ok(Some(format!(
+        "<!DOCTYPE html>\n<html lang=\"en\">\n<head>\n<meta charset=\"utf-8\">\n\
+         <meta http-equiv=\"Content-Security-Policy\" content=\"{policy}\">\n\
+         <link rel=\"icon\" href=\"data:,\">\n<title>knotdock</title>\n\
+         <style>html, body, #scene {{ margin: 0; height: 100%; overflow: hidden; }} #scene img {{ display: none; }} \
+         #scene {{ position: relative; }}</style>\n</head>\n<body>\n\
+         <div id=\"scene\" role=\"img\" tabindex=\"0\" \
+         aria-label=\"The structure, turned with the mouse or the arrow keys\"></div>\n\
+         {scripts}</body>\n</html>\n",
+        policy = policy(true),
+        scripts = scripts(data, Some(&viewer), &VIEW_SCRIPTS),
+    )))
+}
+
+/// The data, the library with its licence, and scripts.
+fn scripts(data: &str, viewer: Option<&Viewer>, scripts: &[&str]) -> String {
+    let mut text = script("data", &packed(data.as_bytes()));
+    if let Some(viewer) = viewer {
+        let licence = viewer.licence.replace("--", "- -");
+        let _ = write!(text, "<!--\n{licence}\n-->\n");
+        text += &script("viewer", &viewer.packed);
+    }
+    let code = scripts.concat();
+    text + "<script>\n\"use strict\";\n(() => {\n" + &code + "})();\n</script>\n"
 }
 
 fn script(id: &str, packed: &str) -> String {

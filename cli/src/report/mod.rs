@@ -15,6 +15,7 @@ mod solids;
 mod viewer;
 
 pub use clusters::{figures, figures_of};
+pub use html::view_page;
 pub use knotdock::output::run_contacts::MAX_ROWS;
 pub use lists::DirectoryKind;
 pub use run::RunReport;

@@ -39,7 +39,7 @@ pub struct ViewerArguments {
     /// Folder of npm's package 3dmol, for the three-dimensional view of the report [default: what the program was built
     /// with].
     #[arg(long, value_name = "DIR")]
-    viewer: Option<PathBuf>,
+    pub(super) viewer: Option<PathBuf>,
 }
 
 impl ViewerArguments {
