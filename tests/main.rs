@@ -38,6 +38,7 @@ mod machine;
 mod memory;
 mod mesh_docking;
 mod paper_figures;
+mod predictors;
 mod reading;
 mod refine;
 mod reports;

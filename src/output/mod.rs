@@ -24,6 +24,7 @@
 //!   none.
 
 pub mod files;
+pub mod prediction_inputs;
 pub mod records;
 pub mod run_contacts;
 pub mod run_folder;

@@ -3,6 +3,7 @@
 use std::collections::HashSet;
 use std::path::{Path, PathBuf};
 
+use clap::builder::RangedU64ValueParser;
 use clap::{Args, ValueEnum};
 use serde_json::json;
 
@@ -18,11 +19,13 @@ use knotdock::dock::pair::Pair;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::complexes::{PosedPair, file_names};
 use knotdock::output::files::model_file::{model_file_name, write_model_file};
-use knotdock::output::files::staging::put_back;
+use knotdock::output::files::staging::{Stage, put_back};
+use knotdock::output::prediction_inputs::{CONTACTS, PredictionInputs, Predictor};
 use knotdock::output::tables::poses::{PoseRow, PoseTable};
 use knotdock::output::top_complexes::TopComplexes;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock::threads;
+use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 use knotdock_structures::molecule::{ChainMap, Format};
 
@@ -40,9 +43,20 @@ pub struct Export {
     best_of_cluster: bool,
     /// Format: pdb or cif, one file per rank; or ensemble, one file with one model per rank (ensemble.pdb, or .cif where PDB
     /// cannot hold it) [default: pdb, or cif where an input was mmCIF or PDB cannot hold it].
-    #[arg(long, value_name = "pdb|cif|ensemble", hide_possible_values = true)]
+    ///
+    /// Or boltz, chai or protenix: an input of that predictor per rank, with the sequences of both sides and contacts of
+    /// the pose as constraints.
+    #[arg(
+        long,
+        value_name = "pdb|cif|ensemble|boltz|chai|protenix",
+        hide_possible_values = true
+    )]
     format: Option<ExportFormat>,
-    /// Directory to write to [default: DIR/top].
+    /// Contacts of a pose that an input of a predictor has: those that most poses of its cluster share, then the nearest,
+    /// apart from each other.
+    #[arg(long, value_name = "COUNT", default_value_t = CONTACTS, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1000))]
+    contacts: usize,
+    /// Directory to write to [default: DIR/top; of inputs of a predictor DIR/predict].
     #[arg(short, long, value_name = "DIR")]
     output: Option<PathBuf>,
     /// Write complexes as they were searched, not refined.
@@ -61,6 +75,21 @@ enum ExportFormat {
     Pdb,
     Cif,
     Ensemble,
+    Boltz,
+    Chai,
+    Protenix,
+}
+
+impl ExportFormat {
+    /// The predictor whose inputs are written.
+    fn predictor(self) -> Option<Predictor> {
+        match self {
+            Self::Boltz => Some(Predictor::Boltz),
+            Self::Chai => Some(Predictor::Chai),
+            Self::Protenix => Some(Predictor::Protenix),
+            Self::Pdb | Self::Cif | Self::Ensemble => None,
+        }
+    }
 }
 
 impl Export {
@@ -70,11 +99,26 @@ impl Export {
 
     fn export(self, console: Console) -> Result<(), Error> {
         put_back(&self.run)?;
-        let own = self.run.join("top");
+        let predictor = self.format.and_then(ExportFormat::predictor);
+        let own = self.run.join(if predictor.is_some() {
+            "predict"
+        } else {
+            "top"
+        });
         let folder = self.output.clone().unwrap_or(own);
         let exports = self.exports(&folder)?;
         let export = Addition::open(&folder, Some(&self.run))?;
         console.warn_leftovers(&export.leftovers);
+        if let Some(predictor) = predictor {
+            let names = self.predictions(predictor, &exports, export.stage(), console)?;
+            export.place(self.force)?;
+            let paths = names
+                .iter()
+                .map(|name| folder.join(name).display().to_string());
+            let paths: Vec<String> = paths.collect();
+            console.say(paths.join("\n"));
+            return console.result(&json!({ "files": paths }));
+        }
         if self.format == Some(ExportFormat::Ensemble) {
             let pairs = exports.iter().map(RunExport::pairs);
             let mut pairs: Vec<PosedPair> = pairs.collect::<Result<Vec<_>, Error>>()?.concat();
@@ -125,6 +169,69 @@ impl Export {
             "chains": chains.filter(|_| is_one),
         }))?;
         Ok(())
+    }
+
+    /// Writes inputs of a predictor; the names of their files.
+    fn predictions(
+        &self,
+        predictor: Predictor,
+        exports: &[RunExport],
+        stage: &Stage,
+        console: Console,
+    ) -> Result<Vec<String>, Error> {
+        let table = PoseTable::read(&self.run.join("poses.csv"))?;
+        // Clusters of an ensemble are of several structures.
+        let clusters = |row: &PoseRow| -> Vec<Pose> {
+            let rows = table.rows();
+            let cluster = |place: usize| {
+                table
+                    .field(place, "cluster")
+                    .filter(|name| !name.is_empty())
+            };
+            let own = rows
+                .iter()
+                .position(|other| other.rank == row.rank)
+                .and_then(cluster);
+            let others = (0..rows.len()).filter(|&place| own.is_some() && cluster(place) == own);
+            match is_ensemble(&self.run) {
+                true => Vec::new(),
+                false => others.map(|place| rows[place].pose).collect(),
+            }
+        };
+        let mut names = Vec::new();
+        for export in exports {
+            let Pair::Molecules(molecules) = export.bodies.pair() else {
+                return Err(Error::input("these are meshes, not molecules"));
+            };
+            if export.arrangement.is_ring() {
+                return Err(Error::input(
+                    "inputs of predictors are written of two partners, and this is a ring",
+                )
+                .at(&self.run)
+                .help("export it as pdb or cif"));
+            }
+            let inputs = PredictionInputs::new(molecules)?;
+            for warning in &inputs.warnings {
+                console.warn(warning);
+            }
+            for row in &export.rows {
+                let contacts = inputs.contacts(&row.pose, &clusters(row), self.contacts);
+                if contacts.is_empty() {
+                    let message = format!(
+                        "no standard residues are in contact in the pose of rank {}",
+                        row.rank
+                    );
+                    return Err(Error::input(message)
+                        .at(&self.run)
+                        .help("choose other ranks"));
+                }
+                for (name, text) in inputs.files(predictor, row.rank, &contacts) {
+                    stage.write(&name, |file| file.write_all(text.as_bytes()))?;
+                    names.push(name);
+                }
+            }
+        }
+        Ok(names)
     }
 
     /// Place of a rank in the user's list, whichever run it is of.
@@ -178,7 +285,8 @@ impl Export {
                 check_not_read(&folder.join(name), read)?;
             }
             let wanted = run.options.changed(|options| {
-                options.output.raw |= self.raw;
+                // Inputs of predictors are of the poses as they were searched.
+                options.output.raw |= self.raw || self.format.is_some_and(|format| format.predictor().is_some());
             });
             let top = TopComplexes::new(bodies.placed(), &rows, &wanted)?;
             Ok(RunExport {

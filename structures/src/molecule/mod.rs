@@ -25,8 +25,8 @@ mod read;
 mod write;
 
 pub use self::chemistry::{
-    CONTACT_TYPES, LabelReport, Labels, Rotamer, atom_kinds, log_probability, one_letter,
-    plain_atom_name, plain_residue_name, rotamers, standard_residue_name,
+    CONTACT_TYPES, LabelReport, Labels, Rotamer, atom_kinds, log_probability, nucleotide_letter,
+    one_letter, plain_atom_name, plain_residue_name, rotamers, standard_residue_name,
 };
 pub use self::model::{
     Altered, AlternateChoice, Atom, BuiltAssembly, ChainCount, Confidence, ConfidenceSource,

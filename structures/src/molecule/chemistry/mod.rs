@@ -12,7 +12,7 @@ mod rotamers;
 
 pub use self::labels::{LabelReport, Labels};
 pub use self::names::{plain_atom_name, plain_residue_name, standard_residue_name};
-pub use self::residues::{CONTACT_TYPES, atom_kinds, one_letter};
+pub use self::residues::{CONTACT_TYPES, atom_kinds, nucleotide_letter, one_letter};
 pub use self::rotamers::{Rotamer, log_probability, rotamers};
 
 pub(crate) use self::additives::is_additive;

@@ -200,6 +200,12 @@ pub(crate) fn base(residue_name: &str) -> Option<&str> {
     matches!(letter, "A" | "C" | "G" | "T" | "U" | "I").then_some(letter)
 }
 
+/// One letter of a nucleotide by its residue name: A, C, G, T or U.
+pub fn nucleotide_letter(residue_name: &str) -> Option<char> {
+    let letter = base(residue_name)?.chars().next();
+    letter.filter(|&letter| letter != 'I')
+}
+
 /// Whether this is the name of one of the standard nucleotides; other molecules have such names too.
 pub(crate) fn is_nucleotide(residue_name: &str) -> bool {
     base(residue_name).is_some()
