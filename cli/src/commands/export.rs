@@ -53,7 +53,7 @@ pub struct Export {
     )]
     format: Option<ExportFormat>,
     /// Contacts of a pose that an input of a predictor has: those that most poses of its cluster share, then the nearest,
-    /// apart from each other.
+    /// spread over both sides.
     #[arg(long, value_name = "COUNT", default_value_t = CONTACTS, value_parser = RangedU64ValueParser::<usize>::new().range(1..=1000))]
     contacts: usize,
     /// Directory to write to [default: DIR/top; of inputs of a predictor DIR/predict].

@@ -229,7 +229,8 @@ impl Jobs {
         let is_running =
             |queue: &Queue| (queue.running.as_ref()).is_some_and(|running| running.run == run);
         if is_running(&self.queue()) {
-            self.cancel.notify_one();
+            // One that has just ended does not hear it, and neither does the next.
+            self.cancel.notify_waiters();
             return Ok(true);
         }
         let was_waiting = self.change(|queue| {
