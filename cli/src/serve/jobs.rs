@@ -229,7 +229,7 @@ impl Jobs {
         let is_running =
             |queue: &Queue| (queue.running.as_ref()).is_some_and(|running| running.run == run);
         if is_running(&self.queue()) {
-            // One that has just ended does not hear it, and neither does the next.
+            // Not kept for later: a run that has just ended must not hand it to the next.
             self.cancel.notify_waiters();
             return Ok(true);
         }
