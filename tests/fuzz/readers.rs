@@ -4,6 +4,7 @@
 use std::fs;
 use std::path::Path;
 
+use knotdock::models::confidence::{ChainPairIptm, Confidence};
 use knotdock::output::tables::poses::PoseTable;
 use knotdock_cli::records::recorded_run::RecordedRun;
 use knotdock_cli::tables::pair_table::read_pairs;
@@ -32,10 +33,11 @@ pub enum Reader {
     FineContact,
     AtomPair,
     Pairs,
+    Confidence,
 }
 
 impl Reader {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Pdb,
         Self::Mmcif,
         Self::Gzip,
@@ -49,6 +51,7 @@ impl Reader {
         Self::FineContact,
         Self::AtomPair,
         Self::Pairs,
+        Self::Confidence,
     ];
 
     /// Reads an input; says whether it was taken, or panics where a promise is broken. `scratch` is a folder to write
@@ -96,6 +99,7 @@ impl Reader {
                     }
                 }
             }
+            Self::Confidence => confidence(bytes),
             Self::Contact => table(bytes, |text| Ok(vec![Potential::parse(text)?])),
             Self::FineContact => table(bytes, |text| {
                 Ok(DistanceBinnedPotential::parse(text)?.ranges.into())
@@ -128,6 +132,32 @@ impl Reader {
                     }
                 }
             }
+        }
+    }
+}
+
+/// Reads the confidence of a model, whose numbers must be possible.
+fn confidence(bytes: &[u8]) -> bool {
+    match Confidence::parse(bytes.to_vec()) {
+        Ok(found) => {
+            if let Some(pae) = &found.pae {
+                assert!(pae.tokens > 0 && pae.values.len() == pae.tokens * pae.tokens);
+                assert!(
+                    pae.values
+                        .iter()
+                        .all(|value| (0.0..=1000.0).contains(value))
+                );
+            }
+            let plddt = found.plddt.iter().flatten();
+            assert!(plddt.into_iter().all(|value| (0.0..=100.0).contains(value)));
+            if let Some(ChainPairIptm::Matrix(rows)) = &found.chain_pair_iptm {
+                assert!(rows.iter().all(|row| row.len() == rows.len()));
+            }
+            true
+        }
+        Err(error) => {
+            assert!(!error.message().is_empty() && error.remedy().is_some());
+            false
         }
     }
 }
