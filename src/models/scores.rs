@@ -61,36 +61,22 @@ impl PairScores {
         let contacts = beta_contacts(sides);
         let plddt = interface_plddt(sides, &contacts);
         let is_nucleic = chains.iter().any(|chain| chain.is_nucleic);
-        let both = |score: &dyn Fn(&Pae, [&[Residue]; 2], bool) -> f64| {
-            let [first, second] = sides;
-            pae.map(|pae| {
-                [
-                    score(pae, [first, second], false),
-                    score(pae, [second, first], true),
-                ]
-            })
-        };
-        let contact_errors = |pae: &Pae, swapped: bool| -> Vec<f64> {
-            let pairs = contacts.iter().map(|&[i, j]| match swapped {
-                false => (sides[0][i].token, sides[1][j].token),
-                true => (sides[1][j].token, sides[0][i].token),
-            });
-            pairs.map(|(i, j)| error(pae, i, j)).collect()
-        };
+        let directions = [sides, [sides[1], sides[0]]];
+        let errors = pae.map(|pae| {
+            let tokens = contacts
+                .iter()
+                .map(|&[i, j]| [sides[0][i].token, sides[1][j].token]);
+            let forth: Vec<f64> = tokens.clone().map(|[i, j]| error(pae, i, j)).collect();
+            let back: Vec<f64> = tokens.map(|[i, j]| error(pae, j, i)).collect();
+            [forth, back]
+        });
+        let known = plddt.zip(errors.as_ref());
         Self {
-            ipsae: both(&|pae, sides, _| ipsae(pae, sides, cutoff, is_nucleic)),
-            lis: both(&|pae, sides, _| lis(pae, sides)),
+            ipsae: pae.map(|pae| directions.map(|sides| ipsae(pae, sides, cutoff, is_nucleic))),
             pdockq: plddt.map(|plddt| pdockq(plddt, contacts.len())),
-            pdockq2: plddt.and_then(|plddt| {
-                both(&|pae, _, swapped| pdockq2(plddt, &contact_errors(pae, swapped)))
-            }),
-            interface_pae: pae.and_then(|pae| {
-                mean(
-                    [false, true]
-                        .into_iter()
-                        .flat_map(|swapped| contact_errors(pae, swapped)),
-                )
-            }),
+            pdockq2: known.map(|(plddt, both)| both.each_ref().map(|one| pdockq2(plddt, one))),
+            lis: pae.map(|pae| directions.map(|sides| lis(pae, sides))),
+            interface_pae: errors.and_then(|both| mean(both.iter().flatten().copied())),
             interface_plddt: plddt.filter(|_| !contacts.is_empty()),
         }
     }
