@@ -5,6 +5,7 @@ use std::fs;
 use std::path::Path;
 
 use knotdock::models::confidence::{ChainPairIptm, Confidence};
+use knotdock::models::tokens::polymers;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock_cli::records::recorded_run::RecordedRun;
 use knotdock_cli::tables::pair_table::read_pairs;
@@ -255,6 +256,8 @@ fn molecule(path: &Path, index: u64) -> bool {
             assert!(!molecule.report.to_string().is_empty());
             let labels = molecule.labels(7.0);
             assert_eq!(labels.charges.len(), molecule.atoms.len());
+            let polymers = polymers(&molecule, None).unwrap();
+            assert!(polymers.chains.iter().all(|chain| chain.residues.len() > 1));
             // What is slow is computed for a few.
             if index.is_multiple_of(16) {
                 let _ = union_volume(&knots);
