@@ -21,6 +21,7 @@
 //! | [`mod@dock`] | plan, run and outcome of a docking |
 //! | [`evaluate`] | distance of poses from a known complex |
 //! | [`interface`], [`refine`], [`score`] | contacts of complexes, better models, one pose |
+//! | [`models`] | predicted models with their confidence |
 //! | [`mesh`], [`geometry`] | meshes that dock; collisions, obstacles, Minkowski operations |
 //! | [`ensemble`] | several conformations in one ranking |
 //! | [`output`] | the folder of a run: `poses.csv`, complexes, `run.json` |
@@ -38,6 +39,7 @@ pub mod geometry;
 pub mod interface;
 pub mod memory_size;
 pub mod mesh;
+pub mod models;
 pub mod options;
 pub mod output;
 pub mod plain_path;

@@ -37,6 +37,7 @@ mod known_surfaces;
 mod machine;
 mod memory;
 mod mesh_docking;
+mod models;
 mod paper_figures;
 mod predictors;
 mod reading;

@@ -81,6 +81,7 @@ CASES = {
         f"score {EXAMPLE} {POSE} --active-receptor A:57,195 --block-ligand B:1-3 --order magnitude --spacing 3",
     ],
     "interface": ["interface {examples}/4e43_dimer.pdb -o interface.csv --contacts contacts.csv"],
+    "models": ["models {examples}/4e43_dimer.pdb -o models.csv"],
     "sample": [
         "sample {examples}/bunny.obj --grid 2^12 --weights fitted --export balls.obj -o knots.csv",
         "sample {examples}/bunny.obj --grid 2^12 --level 20 --export balls.pdb -o level.csv",

@@ -6,7 +6,7 @@
 mod found;
 mod mutations;
 mod readers;
-mod seeds;
+pub mod seeds;
 
 use readers::Reader;
 

@@ -4,6 +4,8 @@
 use std::fs;
 use std::path::Path;
 
+use knotdock::models::confidence::{ChainPairIptm, Confidence};
+use knotdock::models::tokens::polymers;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock_cli::records::recorded_run::RecordedRun;
 use knotdock_cli::tables::pair_table::read_pairs;
@@ -32,10 +34,11 @@ pub enum Reader {
     FineContact,
     AtomPair,
     Pairs,
+    Confidence,
 }
 
 impl Reader {
-    pub const ALL: [Self; 13] = [
+    pub const ALL: [Self; 14] = [
         Self::Pdb,
         Self::Mmcif,
         Self::Gzip,
@@ -49,6 +52,7 @@ impl Reader {
         Self::FineContact,
         Self::AtomPair,
         Self::Pairs,
+        Self::Confidence,
     ];
 
     /// Reads an input; says whether it was taken, or panics where a promise is broken. `scratch` is a folder to write
@@ -96,6 +100,7 @@ impl Reader {
                     }
                 }
             }
+            Self::Confidence => confidence(bytes),
             Self::Contact => table(bytes, |text| Ok(vec![Potential::parse(text)?])),
             Self::FineContact => table(bytes, |text| {
                 Ok(DistanceBinnedPotential::parse(text)?.ranges.into())
@@ -128,6 +133,32 @@ impl Reader {
                     }
                 }
             }
+        }
+    }
+}
+
+/// Reads the confidence of a model, whose numbers must be possible.
+fn confidence(bytes: &[u8]) -> bool {
+    match Confidence::parse(bytes.to_vec()) {
+        Ok(found) => {
+            if let Some(pae) = &found.pae {
+                assert!(pae.tokens > 0 && pae.values.len() == pae.tokens * pae.tokens);
+                assert!(
+                    pae.values
+                        .iter()
+                        .all(|value| (0.0..=1000.0).contains(value))
+                );
+            }
+            let plddt = found.plddt.iter().flatten();
+            assert!(plddt.into_iter().all(|value| (0.0..=100.0).contains(value)));
+            if let Some(ChainPairIptm::Matrix(rows)) = &found.chain_pair_iptm {
+                assert!(rows.iter().all(|row| row.len() == rows.len()));
+            }
+            true
+        }
+        Err(error) => {
+            assert!(!error.message().is_empty() && error.remedy().is_some());
+            false
         }
     }
 }
@@ -225,6 +256,8 @@ fn molecule(path: &Path, index: u64) -> bool {
             assert!(!molecule.report.to_string().is_empty());
             let labels = molecule.labels(7.0);
             assert_eq!(labels.charges.len(), molecule.atoms.len());
+            let polymers = polymers(&molecule, None).unwrap();
+            assert!(polymers.chains.iter().all(|chain| chain.residues.len() > 1));
             // What is slow is computed for a few.
             if index.is_multiple_of(16) {
                 let _ = union_volume(&knots);

@@ -60,6 +60,15 @@ impl Reader {
                 include_str!("../../scoring/src/terms/pose/atom_pair_potential.csv").to_owned(),
             ],
             Self::Pairs => vec![PAIRS.to_owned()],
+            Self::Confidence => {
+                return vec![
+                    ALPHAFOLD.as_bytes().to_vec(),
+                    BOLTZ.as_bytes().to_vec(),
+                    gzip(ALPHAFOLD),
+                    npy("(1, 2, 2)", &[0.5, 9.0, 8.0, 0.25]),
+                    npz("plddt", &npy("(3,)", &[0.5, 0.75, 1.0])),
+                ];
+            }
         };
         texts.into_iter().map(String::into_bytes).collect()
     }
@@ -68,6 +77,65 @@ impl Reader {
 /// A table of pairs with all that it may have.
 const PAIRS: &str = "name,receptor,ligand,native,rotations\n# of spring\nfirst,a.pdb,\"b.cif.gz:H,L\",,\n\n\
     ,c.pdb,d.pdb,e.pdb,1200\n";
+
+/// Confidence of a model with the entries of AlphaFold 3 and of its summary.
+const ALPHAFOLD: &str = r#"{"atom_plddts": [90.5, 50], "contact_probs": [[1, 0], [0, 1]], "pae": [[0.5, 9], [8, 0.2]],
+    "token_chain_ids": ["A", "B"], "token_res_ids": [1, -1], "chain_pair_iptm": [[0.9, null], [0.4, 0.8]],
+    "iptm": 0.5, "ptm": 0.6, "ranking_score": -99.0, "has_clash": 1.0}"#;
+
+/// The summary of Boltz, and entries under the names of ColabFold.
+const BOLTZ: &str = r#"{"confidence_score": 0.7, "plddt": [0.5, 1], "predicted_aligned_error": [[3]],
+    "pair_chains_iptm": {"0": {"0": 0.9, "1": 0.3}, "1": {"1": 0.8, "0": 0.4}}, "pairwise_iptm": {"A-B": 0.25}}"#;
+
+/// A `.npy` file of NumPy.
+pub fn npy(shape: &str, values: &[f32]) -> Vec<u8> {
+    let header = format!("{{'descr': '<f4', 'fortran_order': False, 'shape': {shape}, }}\n");
+    let length = (header.len() as u16).to_le_bytes();
+    let mut bytes = [b"\x93NUMPY\x01\0".as_slice(), &length, header.as_bytes()].concat();
+    bytes.extend(values.iter().flat_map(|value| value.to_le_bytes()));
+    bytes
+}
+
+/// A `.npz` file of one array, as `numpy.savez` writes it: a zip whose file is not packed.
+pub fn npz(name: &str, array: &[u8]) -> Vec<u8> {
+    let name = format!("{name}.npy");
+    let mut sum = flate2::Crc::new();
+    sum.update(array);
+    let size = (array.len() as u32).to_le_bytes();
+    // Version, flags, method, time, date, checksum, both sizes, lengths of the name and of further fields.
+    let entry = [
+        [20, 0, 0, 0, 0, 0, 0, 0, 0x21, 0].as_slice(),
+        &sum.sum().to_le_bytes(),
+        &size,
+        &size,
+        &(name.len() as u32).to_le_bytes(),
+    ]
+    .concat();
+    let mut bytes = [b"PK\x03\x04".as_slice(), &entry, name.as_bytes(), array].concat();
+    let start = (bytes.len() as u32).to_le_bytes();
+    bytes.extend(
+        [
+            b"PK\x01\x02\x14\0".as_slice(),
+            &entry,
+            &[0; 14],
+            name.as_bytes(),
+        ]
+        .concat(),
+    );
+    let length = bytes.len() as u32 - u32::from_le_bytes(start);
+    let counts = [0, 0, 0, 0, 1, 0, 1, 0];
+    bytes.extend(
+        [
+            b"PK\x05\x06".as_slice(),
+            &counts,
+            &length.to_le_bytes(),
+            &start,
+            &[0; 2],
+        ]
+        .concat(),
+    );
+    bytes
+}
 
 fn gzip(text: &str) -> Vec<u8> {
     let mut packed = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::fast());

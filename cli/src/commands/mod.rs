@@ -9,6 +9,7 @@ pub mod export;
 pub mod inspect;
 pub mod interface;
 pub mod merge;
+pub mod models;
 pub mod morph;
 pub mod obstacle;
 pub mod preset;
