@@ -25,10 +25,14 @@ trust *options:
 python *options:
     scripts/python_checks.sh {{options}}
 
+# The sampler for HADDOCK3, with HADDOCK3 from PyPI
+haddock3:
+    packaging/haddock3/check.sh
+
 # Layout and lints of the scripts; needs ruff (PyPI)
 lint-scripts:
-    ruff format --check scripts python --config scripts/ruff.toml
-    ruff check scripts python --config scripts/ruff.toml
+    ruff format --check scripts python packaging --config scripts/ruff.toml
+    ruff check scripts python packaging --config scripts/ruff.toml
 
 # The documentation as a site, in target/book; needs mdBook (cargo install mdbook)
 docs *options:

@@ -15,10 +15,10 @@ from Bio.SVDSuperimposer import SVDSuperimposer
 
 from haddock import log
 from haddock.core.exceptions import ThirdPartyIntallationError
-from haddock.libs.libontology import ModuleIO, PDBFile
+from haddock.libs.libontology import ModuleIO
 from haddock.modules.sampling.knotdock import HaddockModule, find_program
 
-MODELS, SELECTED, ROTATIONS = 5, 2, 100
+MODELS, SELECTED, ROTATIONS = 5, 1, 100
 # Coordinates of PDB files have three digits: two roundings, and a little.
 ROUNDED = 0.0011
 
@@ -56,7 +56,7 @@ def program(*arguments: object) -> None:
 
 
 def module(topologies: Path, name: str, models: list) -> HaddockModule:
-    """The module after a step of topologies with these models, in its own run folder, which becomes the current folder."""
+    """The module after a step of topologies with these models, in its own run folder, now the current folder."""
     run = topologies.parent.parent / name
     shutil.copytree(topologies, run / "0_topoaa")
     (run / "1_knotdock").mkdir()
@@ -71,7 +71,7 @@ def module(topologies: Path, name: str, models: list) -> HaddockModule:
 
 
 def workflow(folder: Path, receptor: Path, ligand: Path) -> Path:
-    """HADDOCK3's own command, from topologies to energy minimisation of the best models; returns the folder of the run."""
+    """Run of HADDOCK3's own command, from topologies to energy minimisation of the best model; returns its folder."""
     for molecule in (receptor, ligand):
         shutil.copy(molecule, folder)
     (folder / "workflow.toml").write_text(
@@ -159,6 +159,10 @@ def restraints(topologies: Path, pair: list, unrestrained: Path) -> None:
         step.run(**params)
         best = distances(step.path / outputs(step.path)[0].file_name)
         ensure(held(*best), f"restraints {name}: CA atoms at {best} Å, bound {bound} Å")
+        # A restraint that is not needed costs nothing.
+        with open(step.path / "run_1" / "poses.csv") as file:
+            penalty = float(next(csv.DictReader(file))["restraints_penalty"])
+        ensure(penalty == 0, f"restraints {name}: the best pose has a penalty of {penalty}")
 
 
 def ensemble(topologies: Path, pair: list) -> None:
@@ -203,7 +207,7 @@ def errors(topologies: Path, pair: list) -> None:
     try:
         HaddockModule.confirm_installation()
     except ThirdPartyIntallationError as error:
-        ensure("pip install knotdock" in str(error), f"a missing program is reported as: {error}")
+        ensure("Install knotdock" in str(error), f"a missing program is reported as: {error}")
     else:
         ensure(False, "a missing program is not reported")
     finally:

@@ -84,7 +84,7 @@ def write_complex(path: Path, molecules: list[Molecule]) -> None:
     ValueError
         If a coordinate does not fit into the columns of a PDB file.
     """
-    output = []
+    output: list[str] = []
     for molecule in molecules:
         for line, (x, y, z) in zip(molecule.lines, molecule.coordinates.tolist()):
             coordinates = f"{x:8.3f}{y:8.3f}{z:8.3f}"
@@ -111,8 +111,8 @@ class HaddockModule(BaseHaddockModule):
         """Check that the program can be found."""
         if find_program() is None:
             raise ThirdPartyIntallationError(
-                "There is no program `knotdock` on the PATH. Install it with `pip install knotdock`, or put the "
-                "folder that has it on the PATH."
+                "There is no program `knotdock` on the PATH. Install knotdock, and put the folder that has the program "
+                "on the PATH."
             )
 
     def _checked(self, combination: Any) -> tuple[PDBFile, PDBFile]:
@@ -149,7 +149,10 @@ class HaddockModule(BaseHaddockModule):
     def _options(self) -> list[str]:
         """Options of `knotdock dock` that the parameters give."""
         params = self.params
-        options = ["--preset", params["preset"], "--poses", str(max(2000, 2 * params["sampling"]))]
+        options = ["--preset", params["preset"]]
+        # The search keeps 2000 poses by default; there are about half as many clusters.
+        if params["sampling"] > 1000:
+            options += ["--poses", str(2 * params["sampling"])]
         if params["rotations"]:
             options += ["--rotations", str(params["rotations"])]
         if not params["cluster"]:
