@@ -1,7 +1,7 @@
 #!/usr/bin/env bash
 # Checks the module of HADDOCK3 with HADDOCK3 from PyPI, in a virtual environment under target/. Needs python3 (3.11 or
-# later) with venv, and the program in target/debug (or in KNOTDOCK). HADDOCK3's package has the program CNS, free of use
-# for non-profit purposes, with which the workflow makes topologies and minimises models.
+# later) with venv, and the program in target/debug (or in KNOTDOCK). HADDOCK3's package has the program CNS, free of
+# use for non-profit purposes. The workflow makes topologies and minimises models with it.
 #
 #     packaging/haddock3/check.sh              the checks
 #     packaging/haddock3/check.sh --install    make the environment, and check nothing
@@ -21,7 +21,8 @@ if [ "$wanted" != "$(cat "$venv/installed.txt" 2>/dev/null)" ]; then
     # Building HADDOCK3 downloads a program from GitHub that no workflow runs, so its source is unpacked instead.
     "${pip[@]}" download --no-deps --no-build-isolation --dest "$venv/source" --requirement $folder/haddock3.txt
     packages=$("$venv/bin/python" -c 'import sysconfig; print(sysconfig.get_paths()["purelib"])')
-    tar --extract --file "$venv"/source/haddock3-*.tar.gz --strip-components 2 --directory "$packages" --wildcards '*/src'
+    archive=$(ls "$venv"/source/haddock3-*.tar.gz)
+    tar -xzf "$archive" --strip-components 2 -C "$packages" "$(basename "$archive" .tar.gz)/src"
     rm -rf "$venv/source"
     echo "$wanted" >"$venv/installed.txt"
 fi
