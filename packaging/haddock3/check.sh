@@ -29,7 +29,7 @@ fi
 [ "${1:-}" != --install ] || exit 0
 
 "$venv/bin/python" $folder/install.py
-# The program is found beside Python.
+# The module looks on the PATH.
 ln -sf "$(realpath "${KNOTDOCK:-$target/debug/knotdock}")" "$venv/bin/knotdock"
-"$venv/bin/python" $folder/check.py structures/examples/1ppe_receptor_unbound.pdb \
+PATH=$venv/bin:$PATH "$venv/bin/python" $folder/check.py structures/examples/1ppe_receptor_unbound.pdb \
     structures/examples/1ppe_ligand_unbound.pdb
