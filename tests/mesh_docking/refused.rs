@@ -121,6 +121,9 @@ fn options_that_meshes_or_molecules_do_not_have_are_refused() {
             "meshes",
         );
     }
-    let evaluated = place.command(&["interface", "ligand.stl"]).output().unwrap();
+    let evaluated = place
+        .command(&["interface", "ligand.stl"])
+        .output()
+        .unwrap();
     assert_eq!(evaluated.status.code(), Some(2));
 }
