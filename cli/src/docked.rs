@@ -208,7 +208,7 @@ impl Docked {
                 refined: self.top.refined(),
                 contacts: contacts.as_ref(),
                 known: known.as_ref().map(KnownComplex::matched),
-                clusters: figures(&outcome.clusters),
+                clusters: figures(&outcome.clusters, &shown),
                 directory: &docking.shown.display().to_string(),
             };
             let text = report.text(Viewer::embedded());

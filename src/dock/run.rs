@@ -244,8 +244,8 @@ impl<'a> Searched<'a> {
             plan.row_choice(2.0 * plan.options.kernel.tolerance * best_peak.abs()),
             progress,
         );
-        let scored = candidates.iter().map(|one| (one.pose, one.score));
-        let figures = figures(&body, &scored.collect::<Vec<_>>(), &clusters);
+        let scored = |place: usize| (candidates[place].pose, candidates[place].score);
+        let figures = figures(&body, scored, &clusters, &ranking.clusters);
         let error = check.error(plan, &found.peaks, &ranking);
         clock.lap("score");
         let timing = clock.into_stages();
@@ -254,11 +254,7 @@ impl<'a> Searched<'a> {
         Ok(DockOutcome {
             poses: ranking.poses,
             poses_kept: candidates.len(),
-            clusters: ranking
-                .clusters
-                .iter()
-                .map(|&place| figures[place])
-                .collect(),
+            clusters: figures,
             searched: found.searched,
             stopped,
             error,

@@ -134,35 +134,40 @@ pub struct ClusterFigures {
     pub rmsd: Option<[f64; 2]>,
 }
 
-/// The figures of each of the [`greedy`] clusters, in their order. Scores fall from pose to pose.
-pub fn figures(body: &RigidBody, poses: &[(Pose, f64)], clusters: &[usize]) -> Vec<ClusterFigures> {
-    let count = clusters.iter().max().map_or(0, |last| last + 1);
-    let mut members = vec![Vec::new(); count];
-    for (pose, &cluster) in poses.iter().zip(clusters) {
-        members[cluster].push(*pose);
-    }
-    let of_cluster = |members: &Vec<(Pose, f64)>| {
-        let (centre, best) = members[0];
+/// The figures of [`greedy`] clusters, in an order of them. `scored` gives each pose and its score, which falls from pose to
+/// pose: nothing is copied, for there may be many.
+pub fn figures(
+    body: &RigidBody,
+    scored: impl Fn(usize) -> (Pose, f64),
+    clusters: &[usize],
+    order: &[usize],
+) -> Vec<ClusterFigures> {
+    let mut places: Vec<usize> = (0..clusters.len()).collect();
+    places.sort_by_key(|&place| clusters[place]);
+    let members = places.chunk_by(|&a, &b| clusters[a] == clusters[b]);
+    let members: Vec<&[usize]> = members.collect();
+    let of_cluster = |&cluster: &usize| {
+        let members = members[cluster];
+        let count = members.len() as f64;
+        let (centre, best) = scored(members[0]);
         let centre = body.place(&centre);
-        let share = |values: &[f64]| values.iter().sum::<f64>() / values.len() as f64;
-        let scores: Vec<f64> = members.iter().map(|(_, score)| *score).collect();
-        let mean = share(&scores);
-        let squares: Vec<f64> = scores.iter().map(|score| (score - mean).powi(2)).collect();
+        let scores = || members.iter().map(|&place| scored(place).1);
+        let mean = scores().sum::<f64>() / count;
+        let square = scores().map(|score| (score - mean).powi(2)).sum::<f64>() / count;
         let others = members[1..].iter();
-        let rmsds: Vec<f64> = others.map(|(pose, _)| body.rmsd(&centre, pose)).collect();
+        let rmsds = others.map(|&place| body.rmsd(&centre, &scored(place).0));
+        let (sum, largest) = rmsds.fold((0.0, 0.0), |(sum, largest): (f64, f64), rmsd| {
+            (sum + rmsd, largest.max(rmsd))
+        });
         ClusterFigures {
             size: members.len(),
             best,
             mean,
-            deviation: share(&squares).sqrt(),
-            rmsd: rmsds
-                .iter()
-                .copied()
-                .reduce(f64::max)
-                .map(|largest| [share(&rmsds), largest]),
+            deviation: square.sqrt(),
+            rmsd: (members.len() > 1).then(|| [sum / (count - 1.0), largest]),
         }
     };
-    members.iter().map(of_cluster).collect()
+    order.iter().map(of_cluster).collect()
 }
 
 #[cfg(test)]
@@ -252,7 +257,7 @@ mod tests {
         let clusters = greedy(&body, &poses, 5.0);
         assert_eq!(clusters, [0, 1, 0, 1, 2]);
         let scored: Vec<_> = poses.into_iter().zip([9.0, 8.0, 5.0, 4.0, 1.0]).collect();
-        let figures = figures(&body, &scored, &clusters);
+        let figures = figures(&body, |place| scored[place], &clusters, &[0, 1, 2]);
         assert_eq!(figures.len(), 3);
         let expected = ClusterFigures {
             size: 2,

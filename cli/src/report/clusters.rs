@@ -8,6 +8,7 @@ use crate::report::html::data_of;
 use crate::report::shown::significant;
 use knotdock::bounded_read::read_bounded;
 use knotdock::output::files::seal::is_sealed;
+use knotdock::output::run_contacts::MAX_ROWS;
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::rank::cluster::ClusterFigures;
 
@@ -16,9 +17,12 @@ const DIGITS: [i32; 2] = [5, 3];
 /// Largest report that is read.
 const MAX_BYTES: u64 = 64 << 20;
 
-/// The figures as the scripts of a report read them: size, best, mean and standard deviation of the scores, mean and
-/// largest RMSD.
-pub fn figures(clusters: &[ClusterFigures]) -> Value {
+/// The figures of the clusters in a table's first rows, as the scripts of a report read them: size, best, mean and standard
+/// deviation of the scores, mean and largest RMSD.
+pub fn figures(clusters: &[ClusterFigures], table: &PoseTable) -> Value {
+    let rows = 0..table.rows().len().min(MAX_ROWS);
+    let numbers = rows.filter_map(|row| table.field(row, "cluster")?.parse().ok());
+    let shown = numbers.max().unwrap_or(0);
     let row = |cluster: &ClusterFigures| {
         let [mean, largest] = match cluster.rmsd {
             None => [Value::Null, Value::Null],
@@ -28,7 +32,7 @@ pub fn figures(clusters: &[ClusterFigures]) -> Value {
         let [best, score, deviation] = scores.map(|score| significant(score, DIGITS[0]));
         json!([cluster.size, best, score, deviation, mean, largest])
     };
-    clusters.iter().map(row).collect()
+    clusters.iter().take(shown).map(row).collect()
 }
 
 /// The figures in the report of a run, if it is as it was written and has the clusters of the table; else `null`.

@@ -106,10 +106,8 @@ pub(super) fn data(report: &RunReport, count: usize) -> Value {
     if let Some(Ok(evaluator)) = report.known {
         data["overlay"] = overlay(evaluator, &table.rows()[..count]);
     }
-    if let Some(clusters) = report.clusters.as_array() {
-        let numbers = (0..count).filter_map(|row| table.field(row, "cluster")?.parse().ok());
-        let shown = numbers.max().unwrap_or(0);
-        data["clusters"] = clusters.iter().take(shown).cloned().collect();
+    if !report.clusters.is_null() {
+        data["clusters"] = report.clusters.clone();
     }
     data
 }

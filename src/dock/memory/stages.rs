@@ -9,6 +9,7 @@ use crate::pose_space::PoseSpace;
 use crate::pose_space::refine::RefinedPose;
 use crate::pose_space::rotations::RotationGroup;
 use crate::rank::candidates::Candidate;
+use crate::rank::cluster::ClusterFigures;
 use crate::rank::ranking::RankedPose;
 use knotdock_scoring::engine::{EngineMemory, Plan};
 use knotdock_scoring::peaks::Peak;
@@ -37,10 +38,11 @@ const ATOM_WRITTEN: u64 = 1 << 8;
 /// Bytes of a peak.
 const PEAK: u64 = size_of::<Peak>() as u64;
 /// Bytes of a pose when its table is made, which is when it takes the most. They are those of a candidate, of its
-/// cluster (which one, whether it is distinct, and size, weight, centre and place of each cluster), and of a row.
-/// Sorting rows takes half again.
+/// cluster (which one, whether it is distinct, and size, weight, centre and place of each cluster, its poses and its
+/// figures), and of a row. Sorting rows takes half again.
 const RANKED: u64 = (size_of::<Candidate>()
-    + 10 * size_of::<usize>()
+    + 13 * size_of::<usize>()
+    + size_of::<ClusterFigures>()
     + (size_of::<RankedPose>() + size_of::<usize>()) * 3 / 2) as u64;
 /// Bytes of a pose while it is rescored, of which sorting takes half again, and as a row with its quality.
 const RESCORED: u64 = PEAK + (size_of::<RefinedPose>() + size_of::<Candidate>() * 3 / 2) as u64;
