@@ -20,6 +20,9 @@ static JSON: AtomicBool = AtomicBool::new(false);
 /// Whether a failure is being reported: by the first thread that has no memory.
 static REPORTED: AtomicBool = AtomicBool::new(false);
 
+/// Whether the object of another failure was written: there is one object.
+static HAS_OBJECT: AtomicBool = AtomicBool::new(false);
+
 /// The error, and its remedy.
 const MESSAGE: &str = "the system has no memory left";
 const REMEDY: &str = "allow the program more memory (`ulimit -v`, or the limit of its container), or less to its work: \
@@ -33,6 +36,11 @@ pub fn report_as_json() {
 /// Whether failures are reported as JSON objects, too.
 pub(crate) fn wants_json() -> bool {
     JSON.load(Ordering::Relaxed)
+}
+
+/// Has a lack of memory after this, as while the program ends, reported no more.
+pub(crate) fn object_is_written() {
+    HAS_OBJECT.store(true, Ordering::Relaxed);
 }
 
 /// Has writing past the limit on file sizes fail, not end the process.
@@ -89,6 +97,9 @@ fn out_of_memory(bytes: usize) -> ! {
         loop {
             std::hint::spin_loop();
         }
+    }
+    if HAS_OBJECT.load(Ordering::Relaxed) {
+        end()
     }
     let mut text = [0u8; 1024];
     if wants_json() {

@@ -19,6 +19,7 @@ use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use serde_json::{Value, json};
 
 use crate::messages::shown::{shown, shown_json, shown_name};
+use crate::system_limits::object_is_written;
 use knotdock::progress::{Interruption, Progress};
 use knotdock_structures::Error;
 
@@ -137,6 +138,7 @@ impl<'a> Console<'a> {
         if self.json {
             let object = failure_json(failure).to_string();
             write_line(&mut io::stdout(), &shown_json(&object));
+            object_is_written();
         }
         write_line(
             &mut anstream::stderr(),

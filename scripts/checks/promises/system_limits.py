@@ -36,8 +36,8 @@ def threads_refused(trial):
 def memory_refused(trial):
     """If the system gives no more memory a command ends with an error, exit code 1 and JSON.
 
-    RLIMIT_AS from the least that starts the program to 400 MB beyond it. An exit code of 2 is right as well, if the
-    limit is seen before the work.
+    RLIMIT_AS from 1 MB to 400 MB beyond the least that starts the program: with less the system's own library aborts. An
+    exit code of 2 is right as well, if the limit is seen before the work.
     """
     words = random_call(trial)
     for megabytes in range(24, 400, 8):
@@ -46,7 +46,7 @@ def memory_refused(trial):
         if done.returncode == 0:
             break
     before = set(tree(trial.folder))
-    limit = least + int(2 ** trial.random.uniform(10, 28.6))
+    limit = least + int(2 ** trial.random.uniform(20, 28.6))
     call = trial.run(*words, before=limited(AS=limit))
     trial.commands[-1] += f"   # ulimit -v: {limit} bytes"
     if call.code:
