@@ -47,6 +47,17 @@ enum Polymer {
     Rna,
 }
 
+impl Polymer {
+    /// Its name in Boltz and Chai, and in Protenix.
+    fn names(self) -> [&'static str; 2] {
+        match self {
+            Self::Protein => ["protein", "proteinChain"],
+            Self::Dna => ["dna", "dnaSequence"],
+            Self::Rna => ["rna", "rnaSequence"],
+        }
+    }
+}
+
 /// A chain as predictors read it.
 #[derive(Debug)]
 struct Sequence {
@@ -57,6 +68,16 @@ struct Sequence {
     origin: (usize, String),
     /// The central atom of each residue, in the frame of its file.
     central: Vec<[f64; 3]>,
+}
+
+impl Sequence {
+    /// The side and the author's name, of characters that every format holds.
+    fn origin(&self) -> String {
+        let (side, name) = &self.origin;
+        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
+        let name: String = name.chars().map(plain).collect();
+        format!("{} chain {name}", ["receptor", "ligand"][*side])
+    }
 }
 
 /// A residue of a sequence: the chain's place, and the residue's from 0.
@@ -216,15 +237,9 @@ impl<'a> PredictionInputs<'a> {
 
     fn boltz(&self, contacts: &[ChosenContact]) -> String {
         let mut text = "version: 1\nsequences:\n".to_owned();
-        for Sequence {
-            id,
-            polymer,
-            letters,
-            ..
-        } in &self.sequences
-        {
-            let kind = ["protein", "dna", "rna"][*polymer as usize];
-            let origin = self.origin(id);
+        for sequence in &self.sequences {
+            let ([kind, _], origin) = (sequence.polymer.names(), sequence.origin());
+            let Sequence { id, letters, .. } = sequence;
             let _ = write!(
                 text,
                 "  - {kind}:  # {origin}\n      id: {id}\n      sequence: {letters}\n"
@@ -247,22 +262,15 @@ impl<'a> PredictionInputs<'a> {
     }
 
     fn fasta(&self) -> String {
-        let mut text = String::new();
-        for Sequence {
-            id,
-            polymer,
-            letters,
-            ..
-        } in &self.sequences
-        {
-            let kind = ["protein", "dna", "rna"][*polymer as usize];
-            let _ = write!(
-                text,
-                ">{kind}|name={}\n{letters}\n",
-                self.origin(id).replace(' ', "_")
-            );
-        }
-        text
+        let entries = self.sequences.iter().map(|sequence| {
+            let ([kind, _], origin) = (sequence.polymer.names(), sequence.origin());
+            format!(
+                ">{kind}|name={}\n{}\n",
+                origin.replace(' ', "_"),
+                sequence.letters
+            )
+        });
+        entries.collect()
     }
 
     fn chai(&self, contacts: &[ChosenContact]) -> String {
@@ -285,14 +293,10 @@ impl<'a> PredictionInputs<'a> {
     }
 
     fn protenix(&self, name: &str, contacts: &[ChosenContact]) -> Value {
-        let sequences = self.sequences.iter().map(
-            |Sequence {
-                 polymer, letters, ..
-             }| {
-                let kind = ["proteinChain", "dnaSequence", "rnaSequence"][*polymer as usize];
-                json!({ kind: { "sequence": letters, "count": 1 } })
-            },
-        );
+        let sequences = self.sequences.iter().map(|sequence| {
+            let [_, kind] = sequence.polymer.names();
+            json!({ kind: { "sequence": sequence.letters, "count": 1 } })
+        });
         let contacts = contacts.iter().map(|contact| {
             let [(one, first), (other, second)] = contact.places;
             json!({
@@ -306,16 +310,6 @@ impl<'a> PredictionInputs<'a> {
             "sequences": sequences.collect::<Vec<_>>(),
             "constraint": { "contact": contacts.collect::<Vec<_>>() },
         }])
-    }
-
-    /// The side and the name of a chain in its file, of characters that every format holds.
-    fn origin(&self, id: &str) -> String {
-        let found = self.sequences.iter().find(|sequence| sequence.id == id);
-        let (side, name) =
-            found.map_or((0, ""), |sequence| (sequence.origin.0, &sequence.origin.1));
-        let plain = |c: char| if c.is_ascii_alphanumeric() { c } else { '_' };
-        let name: String = name.chars().map(plain).collect();
-        format!("{} chain {name}", ["receptor", "ligand"][side])
     }
 }
 
