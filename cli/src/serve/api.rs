@@ -31,7 +31,7 @@ use knotdock::output::records::program::VERSION_WITH_COMMIT;
 use knotdock_structures::Error;
 
 /// The page's own files: address, kind and content.
-const PAGE: [(&str, &str, &str); 7] = [
+const PAGE: [(&str, &str, &str); 8] = [
     ("/", HTML, include_str!("page/index.html")),
     (
         "/style.css",
@@ -39,6 +39,17 @@ const PAGE: [(&str, &str, &str); 7] = [
         concat!(
             include_str!("../report/page/style.css"),
             include_str!("page/style.css")
+        ),
+    ),
+    // Elements and scenes as reports have them, as a module.
+    (
+        "/report.js",
+        SCRIPT,
+        concat!(
+            include_str!("../report/page/packed.js"),
+            include_str!("../report/page/geometry.js"),
+            include_str!("../report/page/scene.js"),
+            "export { byId, make, makeScene };\n"
         ),
     ),
     ("/main.js", SCRIPT, include_str!("page/main.js")),

@@ -1,6 +1,7 @@
 // The page to dock from: two sides, settings, and the runs.
 
-import { ask, byId, make } from "/server.js";
+import { byId, make } from "/report.js";
+import { ask } from "/server.js";
 import { Side } from "/side.js";
 import { followRuns } from "/runs.js";
 

@@ -1,6 +1,7 @@
 // The run that is going on, those that wait, and the list of all.
 
-import { ask, byId, duration, make, words } from "/server.js";
+import { byId, make } from "/report.js";
+import { ask, duration, words } from "/server.js";
 
 const STATES = { waiting: "waits", running: "running", done: "done", failed: "failed", cancelled: "cancelled", interrupted: "interrupted: the server ended while it ran" };
 

@@ -1,17 +1,4 @@
-// Requests to the server, and small helpers of the page.
-
-/** An element with properties, handlers of events and content. */
-export function make(name, properties = {}, ...content) {
-  const element = document.createElement(name);
-  for (const [key, value] of Object.entries(properties)) {
-    if (typeof value === "function") element.addEventListener(key, value);
-    else if (value !== null && value !== false) element.setAttribute(key, value === true ? "" : value);
-  }
-  element.append(...content);
-  return element;
-}
-
-export const byId = (id) => document.getElementById(id);
+// Requests to the server, and their answers in words.
 
 /** The failure of a request or a run in words. */
 export function words(error) {

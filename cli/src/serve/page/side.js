@@ -1,6 +1,7 @@
 // One side of a docking: its files, what was read of them, the chains that are picked and the residues that are marked.
 
-import { ask, make, textOf } from "/server.js";
+import { make } from "/report.js";
+import { ask, textOf } from "/server.js";
 import { View, nameOf } from "/view.js";
 
 const KNOWN = /\.(pdb|ent|cif|mmcif|stl|obj|ply|off|csv|sph|yml)(\.gz)?$/i;

@@ -1,6 +1,6 @@
 // The view of one side in three dimensions: 3Dmol.js, whose library is loaded once.
 
-import { make } from "/server.js";
+import { make, makeScene } from "/report.js";
 
 const PLAIN = "#bfbfbf";
 const FADED = 0.25;
@@ -41,16 +41,16 @@ export class View {
       return;
     }
     this.root.replaceChildren();
-    this.viewer = window.$3Dmol.createViewer(this.root, { backgroundColor: "white", antialias: true, disableFog: true });
     const { text, format, surface } = this.content;
-    if (surface) this.addSurface(surface);
+    if (surface) makeScene(this.root, { bodies: [{ format: "mesh", ...surface }], placed: [] });
     else if (text !== undefined) {
+      this.viewer = window.$3Dmol.createViewer(this.root, { backgroundColor: "white", antialias: true, disableFog: true });
       this.model = this.viewer.addModel(text, format, { keepH: false, assignBonds: true });
       this.viewer.setClickable({}, true, (atom) => this.pick(nameOf(atom.chain), `${atom.resi}${(atom.icode ?? "").trim()}`));
       this.paint();
+      this.viewer.zoomTo();
+      this.viewer.render();
     }
-    this.viewer.zoomTo();
-    this.viewer.render();
     this.root.dataset.drawn = "true";
   }
 
@@ -67,29 +67,6 @@ export class View {
       this.model.setStyle({ predicate: marked(mark) }, { cartoon: { color }, stick: { radius: 0.3, color } });
     }
     this.viewer.render();
-  }
-
-  /** A mesh as flat triangles, brought to the size of a protein. */
-  addSurface({ positions, triangles }) {
-    const [low, high] = [0, 1].map((end) => [0, 1, 2].map((axis) => {
-      const parts = positions.filter((_, at) => at % 3 === axis);
-      return parts.reduce((best, part) => (end === 0 ? Math.min(best, part) : Math.max(best, part)), parts[0]);
-    }));
-    const scale = 50 / Math.max(...high.map((part, axis) => part - low[axis]), Number.MIN_VALUE);
-    const point = (corner) => Object.fromEntries(["x", "y", "z"].map((axis, at) => [axis, (positions[3 * corner + at] - (low[at] + high[at]) / 2) * scale]));
-    const vertexArr = triangles.map(point);
-    const normalArr = [];
-    for (let at = 0; at < vertexArr.length; at += 3) {
-      const [a, b, c] = vertexArr.slice(at, at + 3);
-      const [u, v] = [b, c].map((end) => ({ x: end.x - a.x, y: end.y - a.y, z: end.z - a.z }));
-      const normal = { x: u.y * v.z - u.z * v.y, y: u.z * v.x - u.x * v.z, z: u.x * v.y - u.y * v.x };
-      normalArr.push(normal, normal, normal);
-    }
-    this.viewer.addCustom({ vertexArr, normalArr, faceArr: vertexArr.map((_, at) => at), color: PLAIN });
-    // What is zoomed to are atoms; these are not drawn.
-    const bounds = this.viewer.addModel();
-    bounds.addAtoms(vertexArr.map(({ x, y, z }, serial) => ({ elem: "H", x, y, z, serial, bonds: [], bondOrder: [], properties: {} })));
-    bounds.setStyle({}, { hidden: true });
   }
 }
 
