@@ -159,7 +159,7 @@ impl<'a> PredictionInputs<'a> {
     }
 
     /// At most `count` contacts of a pose: those that most of the poses of its cluster have first, then the nearest, and
-    /// apart from each other on both sides.
+    /// spaced on both sides.
     pub fn contacts(&self, pose: &Pose, cluster: &[Pose], count: usize) -> Vec<ChosenContact> {
         let mut poses: HashMap<[usize; 2], usize> = HashMap::new();
         for other in cluster {
@@ -186,15 +186,15 @@ impl<'a> PredictionInputs<'a> {
             by_poses.then(by_distance).then(a.places.cmp(&b.places))
         });
         let mut chosen: Vec<ChosenContact> = Vec::new();
-        // Small interfaces have fewer that are apart.
+        // Small interfaces have fewer spaced ones.
         for spread in [SPREAD, SPREAD / 2.0, f64::MIN_POSITIVE] {
             for contact in &all {
-                let is_apart = |other: &ChosenContact| {
+                let is_spaced = |other: &ChosenContact| {
                     let ends = contact.places.into_iter().zip(other.places);
-                    let mut apart = ends.map(|(a, b)| distance(self.central(a), self.central(b)));
-                    apart.all(|apart| apart >= spread)
+                    let mut spacings = ends.map(|(a, b)| distance(self.central(a), self.central(b)));
+                    spacings.all(|spacing| spacing >= spread)
                 };
-                if chosen.len() < count && chosen.iter().all(is_apart) {
+                if chosen.len() < count && chosen.iter().all(is_spaced) {
                     chosen.push(*contact);
                 }
             }

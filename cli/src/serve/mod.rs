@@ -42,7 +42,7 @@ struct Server {
     program: Vec<OsString>,
 }
 
-/// Where the runs go, and where the page is.
+/// The folder of the runs and the address of the page.
 pub struct Place {
     pub folder: PathBuf,
     pub port: u16,
