@@ -191,7 +191,8 @@ impl<'a> PredictionInputs<'a> {
             for contact in &all {
                 let is_spaced = |other: &ChosenContact| {
                     let ends = contact.places.into_iter().zip(other.places);
-                    let mut spacings = ends.map(|(a, b)| distance(self.central(a), self.central(b)));
+                    let mut spacings =
+                        ends.map(|(a, b)| distance(self.central(a), self.central(b)));
                     spacings.all(|spacing| spacing >= spread)
                 };
                 if chosen.len() < count && chosen.iter().all(is_spaced) {
