@@ -3,7 +3,7 @@
 Imported by benchmark.py, whose option --restraints gives them to each docking. Distances are between CA atoms of the
 bound structures, which are superposed as in the complex:
 
-- `pair`: one residue pair that is within 10 Å.
+- `pair`: one residue pair that is within 10 Å, given as 12 Å.
 - `group`: one ambiguous restraint, of all contact residues of the receptor to all of the ligand: 3 Å.
 - `crosslinks`: five cross-links of DSS, of which a pose has to satisfy three. Three are true (10 to 25 Å), two are
   false (35 Å or more; the farthest pairs where none is so far).
@@ -30,7 +30,7 @@ def restraint_options(kind, texts, name, seed, path):
         rows = group_rows(texts, alphas)
     elif kind == "pair":
         near = [pair for pair, distance in pairs(*alphas) if distance <= 10]
-        rows = [f"{atom(a)},{atom(b)},10," for a, b in [source.choice(near)]]
+        rows = [f"{atom(a)},{atom(b)},12," for a, b in [source.choice(near)]]
     else:
         rows = [f"{atom(a)},{atom(b)},," for a, b in crosslinks(alphas, source)]
     path.write_text("\n".join(["receptor,ligand,upper,group", *rows, ""]))

@@ -10,6 +10,9 @@ const SMALL: f64 = 14.0;
 /// Rotations of the smallest ligands.
 const FEWEST_ROTATIONS: usize = 1000;
 
+/// Radius of clusters in Å if the interface is known in part (docs/research/defaults.md, "Clusters").
+const CONFINED_RADIUS: f64 = 9.0;
+
 /// Radius of gyration of a molecule's heavy atoms, Å.
 fn radius_of_gyration(molecule: &Molecule) -> f64 {
     let heavy = molecule.atoms.iter().filter(|atom| !atom.is_hydrogen());
@@ -39,6 +42,7 @@ impl DockOptions {
         for (receptor, ligand) in [
             (&restraints.block_receptor, &mut restraints.block_ligand),
             (&restraints.active_receptor, &mut restraints.active_ligand),
+            (&restraints.site_receptor, &mut restraints.site_ligand),
         ] {
             if ligand.is_none() {
                 ligand.clone_from(receptor);
@@ -52,13 +56,17 @@ impl DockOptions {
         self
     }
 
-    /// The options of a search with a ligand: fewer rotations of a small one, unless `is_given` names an option that
-    /// decides on them.
+    /// The options of a search with a ligand, unless `is_given` names an option that decides on them: fewer rotations of
+    /// a small one, and wider clusters if the interface is known in part.
     ///
-    /// Their number falls with the cube of the radius of gyration, so that neighbouring rotations move a ligand's
-    /// surface by one length, whatever its size (docs/research/defaults.md).
+    /// The number of rotations falls with the cube of the radius of gyration, so that neighbouring rotations move a
+    /// ligand's surface by one length, whatever its size (docs/research/defaults.md). What is known confines the poses,
+    /// so that more of the best ones are alike.
     #[must_use]
     pub fn of_ligand(mut self, ligand: &Molecule, is_given: impl Fn(&str) -> bool) -> Self {
+        if self.restraints.knows_contacts() && !is_given("cluster_radius") {
+            self.ranking.cluster_radius = CONFINED_RADIUS;
+        }
         if ["rotations", "fine_rotations", "symmetry"]
             .into_iter()
             .any(is_given)
@@ -76,7 +84,7 @@ impl DockOptions {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use knotdock_structures::molecule::{InputSpec, ReadOptions, read};
+    use knotdock_structures::molecule::{Format, InputSpec, ReadOptions, read};
     use std::path::Path;
 
     /// Rotations by default for the example's inhibitor, blown up about the origin by a factor.
@@ -87,6 +95,36 @@ mod tests {
         let ligand = ligand.map_positions(|position| position.map(|x| factor * x));
         let options = DockOptions::default().of_ligand(&ligand, |name| name == given);
         options.search.rotations
+    }
+
+    /// What is known of contacts widens clusters, unless their radius is given; blocked residues do not.
+    #[test]
+    fn clusters_are_wider_if_contacts_are_known() {
+        let ligand = Molecule::new(Vec::new(), Format::Pdb);
+        let radius = |named: &str, given: &str| {
+            let options = DockOptions::default().changed(|options| {
+                let residues = Some("A:5".parse().unwrap());
+                let restraints = &mut options.restraints;
+                match named {
+                    "active_receptor" => restraints.active_receptor = residues,
+                    "site_ligand" => restraints.site_ligand = residues,
+                    "block_ligand" => restraints.block_ligand = residues,
+                    _ => (),
+                }
+            });
+            let options = options.of_ligand(&ligand, |name| name == given);
+            options.ranking.cluster_radius
+        };
+        let default = DockOptions::default().ranking.cluster_radius;
+        for (named, expected) in [
+            ("", default),
+            ("block_ligand", default),
+            ("active_receptor", CONFINED_RADIUS),
+            ("site_ligand", CONFINED_RADIUS),
+        ] {
+            assert_eq!(radius(named, ""), expected, "{named}");
+            assert_eq!(radius(named, "cluster_radius"), default);
+        }
     }
 
     /// Its radius of gyration is 8.6 Å: equal steps along the surface would take 834 rotations.

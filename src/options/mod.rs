@@ -160,7 +160,7 @@ mod tests {
         alpha=3 resolution=6 pass_length=15 spacing=0.3333333333333333 tolerance=1e-3 core_weight=2 \
         electrostatics_weight=0 contact_weight=1e5 fine_contact_weight=1 atom_pair_weight=2 relaxed_weight=0 \
         unresolved_weight=1 termini_weight=0 ph=5.5 restraint_weight=3 antibody=whole block_receptor=A:1-3 \
-        block_ligand=B active_weight=1 active_receptor=A:5 active_ligand=B:7,9 restraints_need=60% tbl_bounds=written \
+        block_ligand=B active_weight=1 active_receptor=A:5 active_ligand=B:7,9 site_receptor=A:6 site_ligand=B:8 restraints_need=60% tbl_bounds=written \
         crosslink=BS3 violation_weight=9 interface_receptor=bfactor interface_ligand=bfactor interface_weight=1 \
         membrane=-15,15 membrane_weight=2 peptidase_weight=0 rotations=17 fine_rotations=15deg fine_share=0.5 \
         precision=double engine=gpu per_rotation=1 poses=9 refine=0 symmetry=C3 cluster_radius=0 sharp=off \

@@ -10,7 +10,8 @@ options! {
     RankingOptions as ranking, "Ranking", Both {
         /// RMSD within which poses form a cluster, over the ligand's CA atoms.
         ///
-        /// For meshes it is over the sample points, and the default is 2.273 times the offset.
+        /// The default is 9 if active residues, a site or restraints are given. For meshes the radius is over the sample
+        /// points, and the default is 2.273 times the offset.
         cluster_radius: f64 = 5.0, "ANGSTROM", NOT_NEGATIVE;
         /// Fit the best poses at atomic resolution: auto, on or off.
         ///

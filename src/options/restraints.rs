@@ -43,6 +43,16 @@ options! {
         ///
         /// Written as those of --active-receptor.
         active_ligand: Option<ResidueSelection> = None, "RESIDUES", Optional(Word);
+        /// Residues of the receptor among which the ligand binds, such as an epitope and its surroundings.
+        ///
+        /// They are active, and all other residues of the receptor are blocked. Written as those of --block-receptor.
+        #[serde(default)]
+        site_receptor: Option<ResidueSelection> = None, "RESIDUES", Optional(Word);
+        /// Residues of the ligand among which the receptor binds.
+        ///
+        /// They are active, and all other residues of the ligand are blocked.
+        #[serde(default)]
+        site_ligand: Option<ResidueSelection> = None, "RESIDUES", Optional(Word);
         /// Distances that are known between receptor and ligand: a table, or a .tbl of HADDOCK and CNS.
         ///
         /// The columns of the table are receptor, ligand, lower, target, upper and group. Residues are written as A:57,
@@ -85,13 +95,23 @@ options! {
 }
 
 impl RestraintOptions {
-    /// Whether residues are named that have a role: blocked or active.
+    /// Whether residues that are in contact, or distances, are named.
+    pub(crate) fn knows_contacts(&self) -> bool {
+        let active = [&self.active_receptor, &self.active_ligand];
+        let site = [&self.site_receptor, &self.site_ligand];
+        let mut residues = active.into_iter().chain(site);
+        residues.any(Option::is_some) || self.restraints.is_some()
+    }
+
+    /// Whether residues are named that have a role: blocked, active or of a site.
     pub(crate) fn names_residues(&self) -> bool {
         let named = [
             &self.block_receptor,
             &self.block_ligand,
             &self.active_receptor,
             &self.active_ligand,
+            &self.site_receptor,
+            &self.site_ligand,
         ];
         named.into_iter().any(Option::is_some)
     }

@@ -131,6 +131,7 @@ impl DockOptions {
         for (name, differs) in [
             ("block_ligand", of.block_receptor != of.block_ligand),
             ("active_ligand", of.active_receptor != of.active_ligand),
+            ("site_ligand", of.site_receptor != of.site_ligand),
             (
                 "interface_ligand",
                 of.interface_receptor != of.interface_ligand,

@@ -20,7 +20,7 @@ pub(crate) struct ResidueRoles {
 
 impl ResidueRoles {
     /// Roles by the options and by the exclusive sites of two molecules. Residues that are both blocked and active
-    /// are active.
+    /// are active. Those of a named site are active, and it blocks all others.
     ///
     /// # Errors
     /// [`Error`] when residues are named that a molecule does not have.
@@ -32,6 +32,7 @@ impl ResidueRoles {
         let named = &options.restraints;
         let blocked = [&named.block_receptor, &named.block_ligand];
         let active = [&named.active_receptor, &named.active_ligand];
+        let site = [&named.site_receptor, &named.site_ligand];
         let mut all = Self::default();
         let mut reasons = Vec::new();
         for (side, name) in ["receptor", "ligand"].into_iter().enumerate() {
@@ -47,12 +48,23 @@ impl ResidueRoles {
                 let residues = String::from(residues.clone());
                 reasons.push(format!("blocked: {residues} of the {name}"));
             }
-            if let Some(residues) = active[side] {
-                let atoms = selected(molecule, name, "active", residues)?;
-                all.active[side] = molecule.atoms_by_residue(&atoms);
-                set_role(&mut roles, &atoms, ResidueRole::Active);
+            if site[side].is_some() {
+                roles.fill(ResidueRole::Excluded);
+            }
+            let mut is_active = vec![false; roles.len()];
+            for (role, residues) in [("active", active[side]), ("site", site[side])] {
+                let Some(residues) = residues else { continue };
+                let atoms = selected(molecule, name, role, residues)?;
+                is_active
+                    .iter_mut()
+                    .zip(atoms)
+                    .for_each(|(is, also)| *is |= also);
                 let residues = String::from(residues.clone());
-                reasons.push(format!("active: {residues} of the {name}"));
+                reasons.push(format!("{role}: {residues} of the {name}"));
+            }
+            if is_active.contains(&true) {
+                all.active[side] = molecule.atoms_by_residue(&is_active);
+                set_role(&mut roles, &is_active, ResidueRole::Active);
             }
             all.roles[side] = roles;
         }
@@ -168,6 +180,31 @@ pub(crate) mod tests {
         assert_eq!(roles.roles[0], [Active, Free, Excluded, Active]);
         assert_eq!(roles.roles[1], [Free, Active, Free, Free]);
         assert_eq!(roles.active, [vec![vec![0], vec![3]], vec![vec![1]]]);
+    }
+
+    /// Residues of a site are active beside those that are named so, and all others are blocked.
+    #[test]
+    fn a_site_blocks_all_other_residues() {
+        let molecule = peptide(10.0);
+        let of = |site: &str, active: Option<&str>| {
+            let options = DockOptions::default().changed(|options| {
+                options.restraints.site_ligand = Some(site.parse().unwrap());
+                options.restraints.active_ligand = active.map(|text| text.parse().unwrap());
+            });
+            ResidueRoles::new([&molecule, &molecule], [&[], &[]], &options)
+        };
+        use ResidueRole::{Active, Excluded, Free};
+        let site = of("A:2-3", None).unwrap();
+        assert_eq!(
+            site.roles,
+            [vec![Free; 4], vec![Excluded, Active, Active, Excluded]]
+        );
+        assert_eq!(site.active, [vec![], vec![vec![1], vec![2]]]);
+        assert_eq!(site.reason, "site: A:2-3 of the ligand");
+        let both = of("A:2-3", Some("A:3-4")).unwrap();
+        assert_eq!(both.roles[1], [Excluded, Active, Active, Active]);
+        let unknown = of("A:9", None).unwrap_err().to_string();
+        assert!(unknown.starts_with("--site-ligand is A:9"), "{unknown}");
     }
 
     /// Atoms outside of an exclusive site are excluded, unless all of an antibody may bind or the user says otherwise.

@@ -214,7 +214,10 @@ fn residue_of_atom(molecule: &Molecule) -> Vec<Option<usize>> {
 /// Residues of a side that poses are rewarded for touching: the user's, or the active site of a peptidase.
 pub(super) fn active(report: &RunReport, side: usize) -> Vec<ResidueSelection> {
     let restraints = &report.options.restraints;
-    let named = [&restraints.active_receptor, &restraints.active_ligand][side].clone();
+    let named = match side {
+        0 => [&restraints.active_receptor, &restraints.site_receptor],
+        _ => [&restraints.active_ligand, &restraints.site_ligand],
+    };
     let site = &report.record["active_site"];
     let sites = match site["partner"].as_str() == Some(["receptor", "ligand"][side]) {
         true => site["sites"].as_array(),
@@ -224,7 +227,12 @@ pub(super) fn active(report: &RunReport, side: usize) -> Vec<ResidueSelection> {
         let residues = site["residues"].as_array().into_iter().flatten();
         residues.filter_map(|residue| residue.as_str()?.parse().ok())
     });
-    named.into_iter().chain(residues).collect()
+    named
+        .into_iter()
+        .flatten()
+        .cloned()
+        .chain(residues)
+        .collect()
 }
 
 /// Residues of a side that are kept free of contact.
