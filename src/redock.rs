@@ -1,4 +1,4 @@
-//! A predicted pose docked again: whether a global search finds it, and how well it scores beside what was found.
+//! A predicted pose docked again: whether a global search finds it, and how well it scores beside the poses found.
 //!
 //! The ligand is in its predicted pose in the file, so that this pose is the identity. The search knows nothing of it:
 //! its rotations are those of any run. Afterwards the predicted pose is *relaxed*: it ascends the exact score from its

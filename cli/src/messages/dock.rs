@@ -18,7 +18,7 @@ use knotdock::priors::flexible_regions::FlexibleRegions;
 use knotdock::priors::restrained::Restrained;
 use knotdock::rank::ranking::RankedPose;
 use knotdock::rank::sharp::{SharpFinding, SharpPose};
-use knotdock::redock::{Agreement, FIRST_CLUSTERS, Redocking, RelaxedPose};
+use knotdock::redock::{Agreement, FIRST_CLUSTERS, OtherPose, Redocking, RelaxedPose};
 use knotdock::table_text::named_columns::listed;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Membrane;
@@ -560,16 +560,16 @@ pub fn redocking_text(found: &Redocking) -> String {
         pose_score,
         ..
     } = found.relaxed;
-    let beside = match (found.best_elsewhere, found.clusters_above) {
-        (None, _) => format!("all of the first {FIRST_CLUSTERS} clusters are near it"),
-        (Some(other), above) => format!(
-            "the best of the first {FIRST_CLUSTERS} clusters elsewhere, rank {}, {:.0}, and {above} of them more",
-            other.rank, other.pose_score
+    let others = match found.best_elsewhere {
+        None => format!("all of the first {FIRST_CLUSTERS} clusters are near it"),
+        Some(OtherPose { rank, pose_score }) => format!(
+            "relaxed in the same way, the best of the first {FIRST_CLUSTERS} clusters elsewhere (rank {rank}) scores \
+             {pose_score:.0}, and {} of them score above the predicted pose",
+            found.clusters_above
         ),
     };
     format!(
-        "{verdict}: {near}\nRelaxed by {rmsd_moved:.1} Å, the predicted pose scores {pose_score:.0}; relaxed in the same \
-         way, {beside}"
+        "{verdict}: {near}\nRelaxed by {rmsd_moved:.1} Å, the predicted pose scores {pose_score:.0}; {others}"
     )
 }
 
