@@ -95,7 +95,7 @@ pub struct Redocking {
     pub best_elsewhere: Option<OtherPose>,
     /// Clusters elsewhere, of the first [`FIRST_CLUSTERS`], that score above the relaxed predicted pose.
     pub clusters_above: usize,
-    /// Angle in degrees from the predicted orientation to the nearest one that was searched.
+    /// Angle in degrees from the predicted orientation to the nearest one of the set, finer ones left out.
     pub nearest_rotation_degrees: f64,
 }
 
@@ -124,7 +124,9 @@ pub fn redock(
     // The first row of each of the first clusters, with its place.
     let mut firsts = [None; FIRST_CLUSTERS];
     for (place, (row, quality)) in rows {
-        let cluster = row.cluster.and_then(|cluster| firsts.get_mut(cluster - 1));
+        let cluster = row
+            .cluster
+            .and_then(|cluster| firsts.get_mut(cluster.checked_sub(1)?));
         if let Some(first @ None) = cluster {
             *first = Some((place, row.pose, is_near(quality)));
         }

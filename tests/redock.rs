@@ -145,7 +145,7 @@ fn what_is_no_complex_of_two_sides_is_refused() {
         ("model.pdb:A,B A C", "which chains"),
         ("model.pdb A", "chains of one side"),
         ("model.pdb A,B X", "no chain 'X'"),
-        ("far.pdb", "contact"),
+        ("far.pdb", "no heavy atoms within 5 Å"),
         ("model.pdb one.pdb", "takes one file"),
         ("missing.pdb", "missing.pdb"),
         (
@@ -168,6 +168,8 @@ fn what_is_no_complex_of_two_sides_is_refused() {
         let error = refused(folder.path(), words.split_whitespace());
         let message = error["message"].as_str().unwrap();
         assert!(message.contains(expected), "{arguments}: {error}");
+        let remedy = error["remedy"].as_str().unwrap();
+        assert!(!remedy.contains("--native"), "{arguments}: {error}");
         assert!(!folder.path().join("no").exists());
     }
     let words = format!("dock one.pdb one.pdb --from-model model.pdb A,B C -o no {QUICK}");

@@ -243,7 +243,8 @@ impl Request {
                 let pair = inputs.each_ref().map(|input| &input.molecule);
                 let matched = native.matched(pair, console).map(KnownComplex::Matched);
                 if self.is_from_model {
-                    return matched.map(Some);
+                    let remedy = "give two sides that touch, as in `--from-model model.cif H,L A`, or dock two files";
+                    return matched.map(Some).map_err(|error| error.help(remedy));
                 }
                 Ok(Some(matched.unwrap_or_else(|failure| {
                     console.warn(format!(
