@@ -99,7 +99,7 @@ const NOT_FROM_MODEL: [&str; 10] = [
 ];
 
 /// Arguments that `knotdock dock -h` shows; `--help` shows all.
-const IN_BRIEF: [&str; 11] = [
+const IN_BRIEF: [&str; 10] = [
     "receptor",
     "ligand",
     "output",
@@ -110,7 +110,6 @@ const IN_BRIEF: [&str; 11] = [
     "symmetry",
     "threads",
     "native",
-    "from_model",
 ];
 
 /// What stands below the options of `knotdock dock`.
