@@ -157,7 +157,7 @@ fn what_is_no_complex_of_two_sides_is_refused() {
             "--model does not work with --from-model",
         ),
         (
-            "model.pdb A,B C --config search.symmetry=C2",
+            "model.pdb A,B C --config search.symmetry='C2'",
             "--symmetry does not work with",
         ),
         ("model.pdb A,B C --native model.pdb", "--native"),
