@@ -250,6 +250,7 @@ impl Run {
             further: &further,
             contacts: None,
             matching: None,
+            redocking: None,
             chosen: None,
             clock: &self.clock,
         };

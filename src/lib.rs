@@ -21,7 +21,7 @@
 //! | [`mod@dock`] | plan, run and outcome of a docking |
 //! | [`evaluate`] | distance of poses from a known complex |
 //! | [`interface`], [`refine`], [`score`] | contacts of complexes, better models, one pose |
-//! | [`models`] | predicted models with their confidence |
+//! | [`models`], [`redock`] | predicted models with their confidence; predicted poses docked again |
 //! | [`mesh`], [`geometry`] | meshes that dock; collisions, obstacles, Minkowski operations |
 //! | [`ensemble`] | several conformations in one ranking |
 //! | [`output`] | the folder of a run: `poses.csv`, complexes, `run.json` |
@@ -49,6 +49,7 @@ pub mod predictions;
 pub mod priors;
 pub mod progress;
 pub mod rank;
+pub mod redock;
 pub mod refine;
 pub mod restraints;
 pub mod score;

@@ -159,7 +159,7 @@ fn what_is_no_complex_is_refused() {
     fs::write(folder.path().join("three.pdb"), three).unwrap();
     for (words, said) in [
         ("three.pdb", "the file has E, I, J"),
-        ("receptor.pdb", "the file has E"),
+        ("receptor.pdb", "the file has one chain, E"),
         ("complex.pdb E", "chains of one side"),
         ("complex.pdb E Z", "Z"),
         ("none.pdb", "no such file"),

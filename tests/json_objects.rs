@@ -85,6 +85,7 @@ fn dock_says_where_the_run_is_and_what_is_best() {
             "pose_terms",
             "program",
             "rank",
+            "redocking",
             "results",
             "schema",
             "sharp",

@@ -41,6 +41,7 @@ mod models;
 mod paper_figures;
 mod predictors;
 mod reading;
+mod redock;
 mod refine;
 mod reports;
 mod residues_by_name;

@@ -9,7 +9,8 @@ use crate::inputs::native::measure;
 use crate::inputs::request::KnownComplex;
 use crate::messages::console::Console;
 use crate::messages::dock::{
-    cost_text, error_warning, gaps_text, next_text, outcome_text, restraints_warning, timings_text,
+    cost_text, error_warning, gaps_text, next_text, outcome_text, redocking_text,
+    restraints_warning, timings_text,
 };
 use crate::report::{MAX_ROWS, RunReport, Viewer, figures};
 use crate::shards::WIDE_COLUMNS;
@@ -21,6 +22,7 @@ use knotdock::dock::outcome::DockOutcome;
 use knotdock::dock::pair::{Pair, PreparedPair};
 use knotdock::dock::run::dock_until;
 use knotdock::dock::stopwatch::timed;
+use knotdock::evaluate::PoseQuality;
 use knotdock::options::DockOptions;
 use knotdock::output::files::added::Addition;
 use knotdock::output::files::own_files::RUN;
@@ -31,6 +33,7 @@ use knotdock::output::tables::fields::{Column, number};
 use knotdock::output::tables::run_table::{RunTable, pose_rows};
 use knotdock::output::tables::{quality, restraints};
 use knotdock::output::top_complexes::TopComplexes;
+use knotdock::redock::{Redocking, redock};
 use knotdock_structures::Error;
 use rayon::prelude::*;
 
@@ -85,6 +88,7 @@ impl Docking {
 pub struct Docked {
     docking: Docking,
     outcome: DockOutcome,
+    redocking: Option<Redocking>,
     /// The complexes of the first rows.
     top: TopComplexes,
     /// Columns that restraints, a known complex and the complexes add to the table.
@@ -96,6 +100,7 @@ pub struct Docked {
 impl Docked {
     /// What a docking came to.
     pub fn new(docking: Docking, mut outcome: DockOutcome) -> Result<Self, Error> {
+        let mut redocking = None;
         let mut quality: Vec<Column> = restraints::met(&docking.prepared.plan, &outcome.poses)
             .into_iter()
             .collect();
@@ -103,7 +108,14 @@ impl Docked {
             let rows = pose_rows(&outcome.poses);
             let measured = known.evaluator().map(|evaluator| measure(evaluator, &rows));
             let measured = measured.unwrap_or_default().into_iter();
-            let mut found: Vec<_> = measured.map(|(quality, _)| Some(quality)).collect();
+            let measured: Vec<PoseQuality> = measured.map(|(quality, _)| quality).collect();
+            if docking.request.is_from_model {
+                let PreparedPair { plan, points, .. } = &docking.prepared;
+                let (found, timing) = timed("redock", || redock(plan, points, &outcome, &measured));
+                outcome.timing.push(timing);
+                redocking = Some(found?);
+            }
+            let mut found: Vec<_> = measured.into_iter().map(Some).collect();
             found.resize(rows.len(), None);
             quality.extend(quality::columns(&found));
         }
@@ -125,6 +137,7 @@ impl Docked {
         Ok(Self {
             docking,
             outcome,
+            redocking,
             top,
             quality,
             wide: wide.into(),
@@ -194,6 +207,7 @@ impl Docked {
             further: &self.quality,
             contacts: contacts.as_ref(),
             matching: known.as_ref().map(KnownComplex::entry).transpose()?,
+            redocking: self.redocking.as_ref(),
             chosen: docking.chosen.as_ref(),
             clock: &docking.clock,
         }
@@ -237,6 +251,9 @@ impl Docked {
             "\n{}\n",
             best_clusters(&outcome.poses, &self.quality)
         ));
+        if let Some(redocking) = &self.redocking {
+            console.say(format!("{}\n", redocking_text(redocking)));
+        }
         if let Some(warning) = error_warning(plan, outcome) {
             console.warn(warning);
         }

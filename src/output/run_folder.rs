@@ -30,6 +30,7 @@ use crate::output::tables::restraints;
 use crate::output::tables::run_table::{RunTable, pose_rows};
 use crate::output::top_complexes::TopComplexes;
 use crate::pose_space::arrangement::Arrangement;
+use crate::redock::Redocking;
 use crate::refine::Refined;
 use crate::threads;
 
@@ -146,6 +147,8 @@ pub struct FinishedRun<'a> {
     pub contacts: Option<&'a RunContacts<'a>>,
     /// Report on the match with a known complex, if there is one.
     pub matching: Option<Value>,
+    /// The comparison with a predicted complex that was docked again.
+    pub redocking: Option<&'a Redocking>,
     /// The basis of the plan, if an accuracy or a time was requested.
     pub chosen: Option<&'a Chosen>,
     /// The start of the run.
@@ -238,6 +241,7 @@ impl<'a> FinishedRun<'a> {
             files,
             chains,
             matching: self.matching.as_ref(),
+            redocking: self.redocking,
             timing: self.clock.timing(outcome),
             machine: Machine {
                 chosen: self.chosen.cloned(),

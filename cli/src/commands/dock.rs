@@ -2,7 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
-use clap::{Arg, Args, Command, Id};
+use clap::{Arg, Args, Command, Id, ValueHint};
 use serde_json::Value;
 
 use crate::arguments::conformations::ConformationArguments;
@@ -35,11 +35,11 @@ pub struct Dock {
     ///
     /// Molecules: .pdb, .ent or .cif, each also .gz. FILE:H,L picks chains by the author's names, FILE:H:1-120,L
     /// residues too. Meshes: .stl, .obj, .ply or .off.
-    #[arg(required_unless_present = "rerun", value_name = "RECEPTOR")]
+    #[arg(required_unless_present_any = ["rerun", "from_model"], value_name = "RECEPTOR")]
     receptor: Option<String>,
     /// The molecule or mesh that is moved.
     #[arg(
-        required_unless_present_any = ["rerun", "symmetry", "config"],
+        required_unless_present_any = ["rerun", "symmetry", "config", "from_model"],
         value_name = "LIGAND"
     )]
     ligand: Option<String>,
@@ -54,6 +54,14 @@ pub struct Dock {
     /// Its inputs are checked by SHA-256, and its options are taken.
     #[arg(long, value_name = "RUN.JSON")]
     rerun: Option<PathBuf>,
+    /// Dock the two sides of a predicted complex again, and say whether docking agrees with it.
+    ///
+    /// MODEL is a file of two chains, the receptor first; of more, the chains of both sides follow, as in model.cif H,L A.
+    /// The search starts from nothing that the prediction says, and each pose is measured against it. The predicted pose
+    /// and the first ten clusters are moved to their local optima, whose scores compare.
+    #[arg(long, value_name = "MODEL [CHAINS CHAINS]", num_args = 1..=3, value_hint = ValueHint::FilePath)]
+    #[arg(conflicts_with_all = NOT_FROM_MODEL)]
+    from_model: Vec<String>,
     #[command(flatten)]
     options: OptionArguments<OfDock>,
     /// Choose tolerance, spacing and precision for an error within this share of the best score.
@@ -74,6 +82,21 @@ pub struct Dock {
     #[command(flatten)]
     native: NativeArguments,
 }
+
+/// Arguments that `--from-model` excludes: it names both molecules and the complex to measure by, and its answer is of a
+/// whole search of one conformation.
+const NOT_FROM_MODEL: [&str; 10] = [
+    "receptor",
+    "ligand",
+    "budget",
+    "native",
+    "native_receptor",
+    "native_ligand",
+    "receptor_models",
+    "ligand_models",
+    "receptor_also",
+    "ligand_also",
+];
 
 /// Arguments that `knotdock dock -h` shows; `--help` shows all.
 const IN_BRIEF: [&str; 10] = [
@@ -96,6 +119,7 @@ Examples:
   knotdock dock antibody.pdb:H,L antigen.pdb:A -o run
   knotdock dock enzyme.pdb inhibitor.pdb --active-receptor A:57,189-195
   knotdock dock subunit.pdb --symmetry C3
+  knotdock dock --from-model model.cif H,L A
   knotdock dock block.stl peg.stl";
 
 /// A command whose `-h` shows of the options of a run only those that most people need.
@@ -184,6 +208,9 @@ impl Dock {
     }
 
     fn request(&self, given: GivenOptions) -> Result<Request, Error> {
+        if !self.from_model.is_empty() {
+            return Request::from_model(&self.from_model, given);
+        }
         let given = given.of_rings()?;
         let symmetry = given.options.search.symmetry;
         // Of a ring the ligand is another copy of the receptor.

@@ -5,6 +5,7 @@ use std::sync::Arc;
 
 use crate::inputs::checks::{refuse_traces, room_to_read, room_to_sample};
 use crate::inputs::molecules::{Input, folders_of, label};
+use crate::inputs::native::NativeFiles;
 use crate::inputs::request::GivenMeshOptions;
 use crate::inputs::solids::{ShapeInput, ball_file_of, is_shape};
 use crate::messages::console::Console;
@@ -150,6 +151,14 @@ impl Bodies {
                     ..PreparedPair::meshes(Arc::new(sampling), options)?
                 })
             }
+        }
+    }
+
+    /// Both molecules where they are, as the known complex.
+    pub fn as_known(&self) -> Option<NativeFiles> {
+        match self {
+            Self::Molecules(inputs) => Some(NativeFiles::of_pair(inputs)),
+            Self::Meshes(_) => None,
         }
     }
 

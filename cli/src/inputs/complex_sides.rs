@@ -218,13 +218,50 @@ fn two_chains(
         })
         .collect();
     <[String; 2]>::try_from(names).map_err(|names| {
-        Error::input(format!(
-            "it is not known which chains belong together; the file has {}",
-            names.join(", ")
-        ))
+        Error::input(match names.as_slice() {
+            [name] => format!("a complex has two sides, and the file has one chain, {name}"),
+            names => format!(
+                "it is not known which chains belong together; the file has {}",
+                names.join(", ")
+            ),
+        })
         .at(&whole.path)
         .help("name the chains of both sides behind the files, as in `knotdock interface x.pdb H,L A`")
     })
+}
+
+/// Receptor and ligand of a complex to dock again, by its file and perhaps the chains of both: `model.cif`, whose first
+/// of two chains is the receptor, `model.cif:A,B`, or `model.cif`, `H,L` and `A`.
+pub fn sides_of_model(words: &[String], options: &ReadOptions) -> Result<[InputSpec; 2], Error> {
+    const REMEDY: &str = "give a complex, and the chains of its receptor and ligand, as in `--from-model model.cif H,L A`";
+    let (files, chains) = files_and_chains(words, "dock --from-model")?;
+    let [file] = files else {
+        let message = format!(
+            "--from-model takes one file, and {} are given",
+            files.join(" and ")
+        );
+        return Err(Error::input(message).help(REMEDY));
+    };
+    let InputSpec {
+        path,
+        chains: picked,
+        ..
+    } = InputSpec::parse(file)?;
+    let whole = InputSpec::whole(path);
+    let sides = match (chains, picked.as_deref()) {
+        (Some(sides), None) => sides,
+        (None, Some([first, second])) => [first.clone(), second.clone()],
+        (None, None) => two_chains(&whole, file_bytes(&whole.path)?, options)
+            .map_err(|error| error.help(REMEDY))?,
+        (_, Some(_)) => {
+            let message = format!("{file} does not say which chains are the receptor's");
+            return Err(Error::input(message).at(&whole.path).help(REMEDY));
+        }
+    };
+    Ok(sides.map(|names| InputSpec {
+        chains: Some(names.split(',').map(str::to_owned).collect()),
+        ..whole.clone()
+    }))
 }
 
 #[cfg(test)]

@@ -61,6 +61,14 @@ impl NativeArguments {
 }
 
 impl NativeFiles {
+    /// A complex that is docked again.
+    pub fn of_pair([receptor, ligand]: &[Input; 2]) -> Self {
+        Self {
+            first: receptor.clone(),
+            ligand: Some(ligand.clone()),
+        }
+    }
+
     /// Reads the files that a run recorded.
     pub fn recorded(record: &NativeRecord, run: &Path) -> Result<Self, Error> {
         let read = |record: &InputRecord| {

@@ -6,6 +6,7 @@ use serde_json::{Value, json};
 
 use crate::arguments::options::GivenOptions;
 use crate::inputs::bodies::Bodies;
+use crate::inputs::complex_sides::sides_of_model;
 use crate::inputs::native::NativeFiles;
 use crate::messages::console::Console;
 use crate::records::recorded_run::RecordedRun;
@@ -20,7 +21,7 @@ use knotdock::output::records::program::{VERSION_WITH_COMMIT, cpu_features};
 use knotdock::output::tables::poses::PoseTable;
 use knotdock::pose_space::arrangement::Arrangement;
 use knotdock_structures::Error;
-use knotdock_structures::molecule::Molecule;
+use knotdock_structures::molecule::{ModelChoice, Molecule};
 
 /// Options that follow from meshes unless they are given.
 #[derive(Clone, Copy)]
@@ -115,6 +116,8 @@ pub struct Request {
     pub bodies: Bodies,
     /// The known complex, if one was named.
     pub native: Option<NativeFiles>,
+    /// Whether the known complex is the prediction that the molecules are from.
+    pub is_from_model: bool,
     /// What to do; a plan of meshes fills in defaults for them.
     pub options: DockOptions,
     /// Options that are given and do not follow from meshes.
@@ -136,10 +139,38 @@ impl Request {
         Self {
             bodies,
             native,
+            is_from_model: false,
             given: (&given).into(),
             is_angle: given.by_angle() || !given.has("rotations"),
             options,
         }
+    }
+
+    /// The docking of the two sides of a predicted complex, which words name.
+    pub fn from_model(words: &[String], given: GivenOptions) -> Result<Self, Error> {
+        const WHOLE: &str = "--from-model";
+        let options = &given.options;
+        let refused = |name: &str, remedy: &str| {
+            Err(Error::input(format!("--{name} does not work with {WHOLE}")).help(remedy))
+        };
+        let copy = "write the complex that is meant into its own file, and give that";
+        if options.search.symmetry.is_some() {
+            return refused(
+                "symmetry",
+                "dock one chain: `knotdock dock model.cif:A --symmetry C2`",
+            );
+        } else if options.input.model != ModelChoice::default() {
+            return refused("model", copy);
+        } else if options.input.assembly.is_some() {
+            return refused("assembly", copy);
+        }
+        let sides = sides_of_model(words, &options.input.reading())?;
+        let bodies = Bodies::of(sides, options)?;
+        let native = bodies.as_known();
+        Ok(Self {
+            is_from_model: true,
+            ..Self::of(bodies, native, given)
+        })
     }
 
     /// The request of an earlier run, from its run.json, on this machine.
@@ -162,14 +193,16 @@ impl Request {
                 cpu_features()
             ));
         }
+        let bodies = Bodies::recorded(run.inputs.pair(), path, &run.options)?;
+        let is_from_model = run.redocking.is_some();
         Ok(Self {
-            bodies: Bodies::recorded(run.inputs.pair(), path, &run.options)?,
-            native: run
-                .inputs
-                .native
-                .as_ref()
-                .map(|native| NativeFiles::recorded(native, path))
-                .transpose()?,
+            native: match (&run.inputs.native, is_from_model) {
+                (_, true) => bodies.as_known(),
+                (Some(native), false) => Some(NativeFiles::recorded(native, path)?),
+                (None, false) => None,
+            },
+            bodies,
+            is_from_model,
             given: GivenMeshOptions {
                 offset: Some(run.options.kernel.offset),
                 defaults: GivenDefaults {
@@ -209,6 +242,10 @@ impl Request {
             (Some(native), Bodies::Molecules(inputs)) => {
                 let pair = inputs.each_ref().map(|input| &input.molecule);
                 let matched = native.matched(pair, console).map(KnownComplex::Matched);
+                if self.is_from_model {
+                    let remedy = "give two sides that touch, as in `--from-model model.cif H,L A`, or dock two files";
+                    return matched.map(Some).map_err(|error| error.help(remedy));
+                }
                 Ok(Some(matched.unwrap_or_else(|failure| {
                     console.warn(format!(
                         "no pose is measured: {}; `knotdock evaluate` measures the run by another known complex",

@@ -18,6 +18,7 @@ use knotdock::priors::flexible_regions::FlexibleRegions;
 use knotdock::priors::restrained::Restrained;
 use knotdock::rank::ranking::RankedPose;
 use knotdock::rank::sharp::{SharpFinding, SharpPose};
+use knotdock::redock::{Agreement, FIRST_CLUSTERS, OtherPose, Redocking, RelaxedPose};
 use knotdock::table_text::named_columns::listed;
 use knotdock_scoring::terms::effect::Effect;
 use knotdock_scoring::terms::pose::Membrane;
@@ -536,6 +537,40 @@ fn rewarded_text(outcome: &DockOutcome) -> Option<String> {
         "{subject} {} {earn} score for a fit at atomic resolution that stands out (--sharp off ranks without it)",
         listed(ranks.iter().map(String::as_str))
     ))
+}
+
+/// Whether docking agrees with a predicted complex, and how its pose scores.
+pub fn redocking_text(found: &Redocking) -> String {
+    let near = found.near.map(|near| {
+        format!(
+            "rank {} is the first pose near it (DockQ {:.2}, ligand RMSD {:.1} Å)",
+            near.rank, near.dockq, near.lrmsd
+        )
+    });
+    let near = near
+        .as_deref()
+        .unwrap_or("no pose of the search is near it");
+    let verdict = match found.agreement {
+        Agreement::Agrees => "Docking agrees with the predicted pose",
+        Agreement::FoundLower => "Docking finds the predicted pose lower",
+        Agreement::DoesNotAgree => "Docking does not agree with the predicted pose",
+    };
+    let RelaxedPose {
+        rmsd_moved,
+        pose_score,
+        ..
+    } = found.relaxed;
+    let others = match found.best_elsewhere {
+        None => format!("all of the first {FIRST_CLUSTERS} clusters are near it"),
+        Some(OtherPose { rank, pose_score }) => format!(
+            "relaxed in the same way, the best of the first {FIRST_CLUSTERS} clusters elsewhere (rank {rank}) scores \
+             {pose_score:.0}, and {} of them score above the predicted pose",
+            found.clusters_above
+        ),
+    };
+    format!(
+        "{verdict}: {near}\nRelaxed by {rmsd_moved:.1} Å, the predicted pose scores {pose_score:.0}; {others}"
+    )
 }
 
 /// Places of the results, and next steps.

@@ -11,6 +11,7 @@ use knotdock::output::files::file_error;
 use knotdock::output::records::input_record::{InputRecord, NativeRecord};
 use knotdock::output::records::manifest::SCHEMA;
 use knotdock::output::records::program::{COMMIT, VERSION};
+use knotdock::redock::Redocking;
 use knotdock_structures::Error;
 
 const REMEDY: &str = "give a run that `knotdock dock` of this version wrote";
@@ -39,6 +40,8 @@ pub struct RecordedRun {
     pub inputs: RecordedInputs,
     /// The options.
     pub options: DockOptions,
+    /// The comparison with a predicted complex, if the run docked one again.
+    pub redocking: Option<Redocking>,
 }
 
 /// The input files of a recorded run.

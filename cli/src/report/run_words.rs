@@ -2,14 +2,17 @@
 
 use std::fmt::Write as _;
 
+use serde::Deserialize;
 use serde_json::Value;
 
+use crate::messages::dock::redocking_text;
 use crate::messages::shown::shell_word;
 use crate::report::html::{escaped, paragraph};
 use crate::report::run::{RunReport, active};
 use crate::tables::report::counted;
 use knotdock::interface::ResidueName;
 use knotdock::pose_space::arrangement::Arrangement;
+use knotdock::redock::Redocking;
 use knotdock::table_text::named_columns::listed;
 
 /// Name of a file without its folder.
@@ -179,8 +182,18 @@ fn next(report: &RunReport) -> String {
     html + "</dl>\n"
 }
 
+/// What the answer of a predicted complex that is docked again means.
+const REDOCKING_LIMITS: &str = "A model's side chains are placed for each other, so agreement says less than \
+                                disagreement does.";
+
 /// The rows in the light of a known complex.
 fn found(report: &RunReport, shown: usize) -> String {
+    if let Ok(redocking) = Redocking::deserialize(&report.record["redocking"]) {
+        return format!(
+            "{}. {REDOCKING_LIMITS}",
+            redocking_text(&redocking).replace('\n', ". ")
+        );
+    }
     let is_good = |row: &usize| {
         let class = report.table.field(*row, "capri");
         class.is_some_and(|class| class != "incorrect")

@@ -19,6 +19,7 @@ use crate::output::records::input_record::{InputRecord, NativeRecord};
 use crate::output::records::program::Program;
 use crate::priors::active_residues::AssumedSite;
 use crate::rank::rescoring::ActingTerm;
+use crate::redock::Redocking;
 use crate::search::coarse_to_fine::FineSearched;
 use crate::search::scan_engine::Adapter;
 use knotdock_scoring::terms::effect::Effect;
@@ -189,6 +190,7 @@ pub(crate) struct Manifest<'a> {
     /// Report on the native's matching, or why it does not match, if there is one.
     #[serde(rename = "match")]
     pub matching: Option<&'a Value>,
+    pub redocking: Option<&'a Redocking>,
     pub timing: Timing,
     pub machine: Machine,
 }

@@ -10,7 +10,7 @@ mod stage;
 
 pub use evidence::{Evidence, SharpFinding};
 
-pub(crate) use stage::{SharpInputs, optima, settle};
+pub(crate) use stage::{Optima, SharpInputs, optima, settle};
 
 /// The sharp fit of one pose.
 #[derive(Clone, Copy, Debug, PartialEq)]
