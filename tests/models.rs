@@ -359,10 +359,10 @@ fn folders_hold_models_of_several_seeds() {
     let evidence = found[0]["pairs"][0]["evidence"].as_str().unwrap();
     let line = text
         .lines()
-        .find(|line| line.starts_with("Chains A B: "))
+        .find(|line| line.starts_with("Chains A B, "))
         .unwrap();
     assert!(
-        line.contains("by ./pred.model_idx_0.cif, of the highest ipTM") && line.contains(evidence),
+        line.contains("by ./pred.model_idx_0.cif (highest ipTM): ") && line.contains(evidence),
         "{line}"
     );
     write(

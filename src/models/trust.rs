@@ -2,23 +2,34 @@
 //!
 //! Each of the three supports the interface, contradicts it, or leaves it open:
 //!
-//! | evidence | supports | contradicts | source of the limits |
-//! |---|---|---|---|
-//! | the larger of ipTM and ipSAE | [`TM_SUPPORTS`] or more | below [`TM_CONTRADICTS`] | EMBL-EBI's course on AlphaFold, for ipTM; ipSAE has the same scale |
-//! | pDockQ2, or pDockQ without PAE | [`DOCKQ_SUPPORTS`] or more | below [`DOCKQ_CONTRADICTS`] | both estimate DockQ, whose classes medium and acceptable begin there (Basu & Wallner, PLoS ONE 11 (2016) e0161879) |
-//! | agreement with the other models | [`AGREEMENT_SUPPORTS`] or more, of at least [`MIN_MODELS`] models | below [`AGREEMENT_CONTRADICTS`] | 500 systems of 20 AlphaFold-Multimer models (github yzqiang18-code/afm-interface-reliability): rank 1 is right in 85% of those above, 38% of those below |
-//! | coordinates | | a buried area below [`MIN_BURIED`], an Sc below [`MIN_SC`], or more clashes than [`MAX_CLASHES`] per contact | met by 101, 103 and 104 of 105 crystal complexes of the protein docking benchmark 5.5, and together by 98 (of each complex the pair of chains with most contacts) |
+//! | evidence | supports | contradicts |
+//! |---|---|---|
+//! | the larger of ipTM and ipSAE | [`TM_SUPPORTS`] or more | below [`TM_CONTRADICTS`] |
+//! | pDockQ2; without PAE and ipTM, pDockQ | [`DOCKQ_SUPPORTS`] or more | below [`DOCKQ_CONTRADICTS`] |
+//! | agreement with the other models | [`AGREEMENT_SUPPORTS`] or more, of at least [`MIN_MODELS`] models | below [`AGREEMENT_CONTRADICTS`] |
+//! | coordinates | at least [`MIN_BURIED`] buried, an Sc of [`MIN_SC`], and at most [`MAX_CLASHES`] clashes per contact | no contact, or more clashes than contacts |
 //!
 //! Confidence, of the first two, supports if one does and none contradicts; it contradicts if one does and none
 //! supports. The word is
 //!
-//! - `likely` if confidence and agreement are known, one of them supports and nothing contradicts,
-//! - `doubtful` if something contradicts and nothing supports,
+//! - `likely` if confidence and agreement are known, one of them supports, nothing contradicts, and the coordinates
+//!   support,
+//! - `doubtful` if something contradicts, and neither confidence nor agreement supports,
 //! - `uncertain` otherwise.
 //!
-//! The study gives agreement as the share of the contacts of two models that both have, |A and B| / |A or B|. Its 0.3 and
-//! 0.8 are 0.46 and 0.89 of 2 |A and B| / (|A| + |B|). The word does not rank models: in the study agreement
-//! distinguished systems, not the models of one.
+//! # Sources of the limits
+//!
+//! - ipTM: EMBL-EBI's course on AlphaFold. ipSAE has the same scale, and disorder does not lower it.
+//! - pDockQ2 and pDockQ estimate DockQ, whose classes acceptable and medium begin at 0.23 and 0.49 (Basu & Wallner, PLoS
+//!   ONE 11 (2016) e0161879).
+//! - Agreement: 500 systems of 20 AlphaFold-Multimer models each (github yzqiang18-code/afm-interface-reliability,
+//!   docs/CONSISTENCY.md). Rank 1 is right in 111 of 130 systems above the one limit and in 69 of 181 below the other.
+//!   The study has |A and B| / |A or B|, of the contacts of two models. Its 0.8 and 0.3 are 0.89 and 0.46 of
+//!   2 |A and B| / (|A| + |B|).
+//! - Coordinates: 101, 103 and 104 of 105 crystal complexes of the protein docking benchmark 5.5 meet the three limits,
+//!   and 98 all of them; of each complex the pair of chains with most contacts counts.
+//!
+//! The word does not rank models: in the study, agreement distinguished systems, not the models of one.
 
 use super::ChainPair;
 
@@ -36,21 +47,21 @@ pub const AGREEMENT_SUPPORTS: f64 = 0.89;
 pub const AGREEMENT_CONTRADICTS: f64 = 0.46;
 /// Fewest models whose agreement supports an interface.
 pub const MIN_MODELS: usize = 5;
-/// Buried area in Å^2, both sides together, below which the coordinates contradict.
+/// Buried area in Å^2, both sides together, from which the coordinates support.
 pub const MIN_BURIED: f64 = 900.0;
-/// Shape complementarity below which the coordinates contradict.
+/// Shape complementarity from which the coordinates support.
 pub const MIN_SC: f64 = 0.5;
-/// Clashes per contact above which the coordinates contradict.
+/// Clashes per contact up to which the coordinates support.
 pub const MAX_CLASHES: f64 = 0.1;
 
 /// A word of trust in an interface.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Trust {
-    /// Confidence and agreement are known, one supports the interface, and nothing contradicts it.
+    /// Confidence and agreement are known, one supports the interface, as the coordinates do, and nothing contradicts it.
     Likely,
     /// The evidence is open, incomplete or in conflict.
     Uncertain,
-    /// Something contradicts the interface, and nothing supports it.
+    /// Something contradicts the interface, and neither confidence nor agreement supports it.
     Doubtful,
 }
 
@@ -119,10 +130,13 @@ impl Assessment {
             _ => "unknown (one model)".to_owned(),
         };
         let (coordinates, coordinates_text) = coordinates(pair);
-        let all = [confidence, verdict, Some(coordinates)];
-        let has = |wanted: Verdict| all.contains(&Some(wanted));
-        let trust = match (has(Verdict::Supports), has(Verdict::Contradicts)) {
-            (true, false) if all.iter().all(Option::is_some) => Trust::Likely,
+        let known = [confidence, verdict];
+        let supports = known.contains(&Some(Verdict::Supports));
+        let contradicts = known.contains(&Some(Verdict::Contradicts));
+        let trust = match (supports, contradicts || coordinates == Verdict::Contradicts) {
+            (true, false) if !known.contains(&None) && coordinates == Verdict::Supports => {
+                Trust::Likely
+            }
             (false, true) => Trust::Doubtful,
             _ => Trust::Uncertain,
         };
@@ -148,7 +162,7 @@ fn confidence(pair: &ChainPair) -> (Option<Verdict>, String) {
     };
     let (dockq_name, dockq) = match pair.scores.pdockq2 {
         Some(both) => ("pDockQ2", Some(larger(both))),
-        None => ("pDockQ", pair.scores.pdockq),
+        None => ("pDockQ", pair.scores.pdockq.filter(|_| tm.is_none())),
     };
     let known = [
         (tm_name, tm, TM_CONTRADICTS, TM_SUPPORTS),
@@ -182,28 +196,28 @@ fn coordinates(pair: &ChainPair) -> (Verdict, String) {
     if contacts == 0 {
         return (Verdict::Contradicts, "contradict (no contact)".to_owned());
     }
+    let clashes = interface.clashes;
+    let plural = if clashes == 1 { "" } else { "es" };
+    let of_clashes = format!("{clashes} clash{plural} in {contacts} contacts");
+    if clashes > contacts {
+        return (Verdict::Contradicts, format!("contradict ({of_clashes})"));
+    }
     let buried: f64 = interface.buried.iter().sum();
-    let mut faults = Vec::new();
+    let mut lacks = Vec::new();
     if buried < MIN_BURIED {
-        faults.push(format!("{buried:.0} Å² buried"));
+        lacks.push(format!("{buried:.0} Å² buried"));
     }
     match interface.shape_complementarity {
         Some(sc) if sc >= MIN_SC => (),
-        Some(sc) => faults.push(format!("Sc {sc:.2}")),
-        None => faults.push("no Sc".to_owned()),
+        Some(sc) => lacks.push(format!("Sc {sc:.2}")),
+        None => lacks.push("no Sc".to_owned()),
     }
-    if interface.clashes as f64 > MAX_CLASHES * contacts as f64 {
-        faults.push(format!(
-            "{} clashes in {contacts} contacts",
-            interface.clashes
-        ));
+    if clashes as f64 > MAX_CLASHES * contacts as f64 {
+        lacks.push(of_clashes);
     }
-    match faults.is_empty() {
-        true => (Verdict::Open, "fit".to_owned()),
-        false => (
-            Verdict::Contradicts,
-            format!("contradict ({})", faults.join(", ")),
-        ),
+    match lacks.is_empty() {
+        true => (Verdict::Supports, "support".to_owned()),
+        false => (Verdict::Open, format!("open ({})", lacks.join(", "))),
     }
 }
 
@@ -289,7 +303,7 @@ mod tests {
         assert_eq!(single.trust, Trust::Uncertain);
         assert_eq!(
             single.evidence,
-            "confidence supports (ipTM 0.90, pDockQ2 0.70); agreement unknown (one model); coordinates fit"
+            "confidence supports (ipTM 0.90, pDockQ2 0.70); agreement unknown (one model); coordinates support"
         );
         let mut bare = pair(None, None, None);
         bare.scores.pdockq = None;
@@ -313,20 +327,45 @@ mod tests {
         assert!(by_plddt.starts_with("confidence open (pDockQ 0.30)"));
     }
 
+    /// Coordinates never make an interface likely; small and loose ones keep it from being so.
     #[test]
-    fn coordinates_only_contradict() {
-        let sure = pair(Some(0.9), None, Some(0.7));
-        let faulty = |change: fn(&mut Interface)| {
-            let mut pair = sure.clone();
+    fn coordinates_limit_the_word() {
+        let found = |iptm, change: fn(&mut Interface)| {
+            let mut pair = pair(Some(iptm), None, None);
             change(&mut pair.interface);
-            let found = Assessment::of(&pair, Some(0.95), 5);
-            assert_eq!(found.trust, Trust::Uncertain);
-            found.evidence
+            let Assessment { trust, evidence } = Assessment::of(&pair, Some(0.7), 5);
+            let (_, coordinates) = evidence.split_once("; coordinates ").unwrap();
+            (trust, coordinates.to_owned())
         };
-        assert!(faulty(|one| one.pairs.clear()).ends_with("coordinates contradict (no contact)"));
-        let small = faulty(|one| one.buried = [200.0, 200.0]);
-        assert!(small.ends_with("coordinates contradict (400 Å² buried)"));
-        let clashing = faulty(|one| (one.clashes, one.shape_complementarity) = (100, None));
-        assert!(clashing.ends_with("coordinates contradict (no Sc, 100 clashes in 50 contacts)"));
+        for (change, text, words) in [
+            (
+                (|_| ()) as fn(&mut Interface),
+                "support",
+                [Trust::Likely, Trust::Uncertain],
+            ),
+            (
+                |one| one.buried = [200.0, 200.0],
+                "open (400 Å² buried)",
+                [Trust::Uncertain; 2],
+            ),
+            (
+                |one| (one.clashes, one.shape_complementarity) = (6, None),
+                "open (no Sc, 6 clashes in 50 contacts)",
+                [Trust::Uncertain; 2],
+            ),
+            (
+                |one| one.clashes = 51,
+                "contradict (51 clashes in 50 contacts)",
+                [Trust::Uncertain, Trust::Doubtful],
+            ),
+            (
+                |one| one.pairs.clear(),
+                "contradict (no contact)",
+                [Trust::Uncertain, Trust::Doubtful],
+            ),
+        ] {
+            assert_eq!(found(0.9, change), (words[0], text.to_owned()));
+            assert_eq!(found(0.7, change), (words[1], text.to_owned()));
+        }
     }
 }

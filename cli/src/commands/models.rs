@@ -443,10 +443,14 @@ fn sentence(system: &System, rows: &[Row]) -> String {
         return String::new();
     };
     let Assessment { trust, evidence } = &row.assessment;
-    let mut text = format!("Chains {first} {second}: {}", trust.name());
+    let mut text = format!("Chains {first} {second}, {}", trust.name());
     let count = system.members.len();
     if count > 1 {
-        text += &format!(", by {}, of the highest ipTM", row.model.path.display());
+        let choice = match row.pair.iptm {
+            Some(_) => "highest ipTM",
+            None => "the first",
+        };
+        text += &format!(" by {} ({choice})", row.model.path.display());
     }
     text += &format!(": {evidence}.");
     if count > 1 {
@@ -477,6 +481,22 @@ fn page<'a>(
     shown: ShownModels,
     viewer: Option<&Viewer>,
 ) -> String {
+    let main = [
+        "chain_1",
+        "chain_2",
+        "trust",
+        "iptm",
+        "ipsae",
+        "pdockq2",
+        "agreement",
+        "dockq",
+        "capri",
+        "file",
+    ];
+    // These come first, in this order.
+    let place = |name: &str| main.iter().position(|one| *one == name);
+    let mut columns: Vec<&Column<Row<'a>>> = columns.iter().collect();
+    columns.sort_by_key(|(name, _)| place(name).unwrap_or(main.len()));
     let record = |row: &Row<'a>| -> StringRecord {
         let fields = columns.iter().map(|(_, value)| field(&value(row)));
         fields.collect()
@@ -486,18 +506,7 @@ fn page<'a>(
         sentences,
         header: columns.iter().map(|(name, _)| *name).collect(),
         records: rows.iter().map(record).collect(),
-        main: &[
-            "file",
-            "chain_1",
-            "chain_2",
-            "trust",
-            "iptm",
-            "ipsae",
-            "pdockq2",
-            "agreement",
-            "dockq",
-            "capri",
-        ],
+        main: &main,
         shown,
     }
     .text(viewer)
