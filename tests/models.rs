@@ -458,8 +458,8 @@ fn confidence_of_other_models_is_refused() {
 
 /// A structure of the example complex, 1PPE.
 fn example(name: &str) -> String {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("structures/examples");
-    fs::read_to_string(path.join(name)).unwrap()
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples");
+    fs::read_to_string(folder.join(name)).unwrap()
 }
 
 /// Atoms under another chain name, shifted along x by some Å.
