@@ -61,7 +61,7 @@ fn of_balls(sides: [&[(Vector3<f64>, f64)]; 2]) -> Option<f64> {
         });
         CellList::new(members.collect(), NEAR)
     });
-    let buried: [Vec<SurfaceDot>; 2] = std::array::from_fn(|side| {
+    let of_side = |side: usize| -> Vec<SurfaceDot> {
         let spheres = sides[side].iter().map(|&(center, radius)| {
             let mut has_dots = false;
             cells[1 - side].visit_within(center.into(), NEAR, |_, _| has_dots = true);
@@ -73,7 +73,8 @@ fn of_balls(sides: [&[(Vector3<f64>, f64)]; 2]) -> Option<f64> {
         });
         let dots = surface_dots(&spheres.collect::<Vec<_>>(), PROBE, DENSITY);
         without_rim(dots, &cells[1 - side])
-    });
+    };
+    let buried: [Vec<SurfaceDot>; 2] = rayon::join(|| of_side(0), || of_side(1)).into();
     let medians = [0, 1].map(|side| median(&buried[side], &buried[1 - side]));
     Some(0.5 * (medians[0]? + medians[1]?))
 }

@@ -19,7 +19,7 @@
 //!
 //! # Sources of the limits
 //!
-//! - ipTM: EMBL-EBI's course on AlphaFold. ipSAE has the same scale, and disorder does not lower it.
+//! - ipTM: EMBL-EBI's online training on AlphaFold. ipSAE has the same scale, and disorder does not lower it.
 //! - pDockQ2 and pDockQ estimate DockQ, whose classes acceptable and medium begin at 0.23 and 0.49 (Basu & Wallner, PLoS
 //!   ONE 11 (2016) e0161879).
 //! - Agreement: 500 systems of 20 AlphaFold-Multimer models each (github yzqiang18-code/afm-interface-reliability,
@@ -315,7 +315,7 @@ mod tests {
         );
     }
 
-    /// Disorder lowers ipTM but not ipSAE; pDockQ stands in for pDockQ2 without PAE.
+    /// Disorder lowers ipTM but not ipSAE; without PAE and ipTM, pDockQ counts.
     #[test]
     fn confidence_is_of_two_kinds() {
         let evidence = |pair: &ChainPair| Assessment::of(pair, None, 1).evidence;
@@ -327,7 +327,7 @@ mod tests {
         assert!(by_plddt.starts_with("confidence open (pDockQ 0.30)"));
     }
 
-    /// Coordinates never make an interface likely; small and loose ones keep it from being so.
+    /// Coordinates never make an interface likely; small or badly fitting ones keep it from being so.
     #[test]
     fn coordinates_limit_the_word() {
         let found = |iptm, change: fn(&mut Interface)| {

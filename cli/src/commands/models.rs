@@ -154,7 +154,7 @@ struct Measured {
     interface_share: f64,
 }
 
-/// Models that were read, with what is gathered of each before the next one.
+/// Models that were read, with the data gathered from each before the next one is read.
 #[derive(Default)]
 struct Found {
     models: Vec<PredictedModel>,

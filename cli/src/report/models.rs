@@ -85,7 +85,7 @@ impl ShownModels {
         }));
     }
 
-    /// Sentences on what the bounds leave out.
+    /// Sentences on the structures and maps that the bounds leave out.
     fn left_out(&self) -> Vec<String> {
         let sentence = |count: usize, things: &str, bound: String| {
             (count > 0).then(|| {
