@@ -62,7 +62,7 @@ def test_complexes_are_evaluated_and_measured():
 
 def test_models_are_rated(tmp_path):
     dimer = pathlib.Path(EXAMPLES, "4e43_dimer.pdb").read_text()
-    path = tmp_path / "<b>x</b>.pdb"
+    path = tmp_path / "<b>.pdb"
     path.write_text(dimer)
     scores, more = tmp_path / "scores.json", tmp_path / "more.json"
     scores.write_text(json.dumps({"iptm": 0.875}))
@@ -75,7 +75,7 @@ def test_models_are_rated(tmp_path):
     assert table["trust"].tolist() == [found.systems[0]["trust"]] == ["uncertain"]
     assert [pair["iptm"] for pair in found.models[0]["pairs"]] == [0.875]
     page = found._repr_html_()
-    assert "&lt;b&gt;x&lt;/b&gt;" in page
+    assert "&lt;b&gt;.pdb" in page
     assert "<b>" not in page
     assert "agreement unknown (one model)" in page
     bare = knotdock.models([dimer, path])
