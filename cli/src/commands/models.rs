@@ -83,7 +83,8 @@ impl ModelsCommand {
             }
         };
         let viewer = self.viewer.read()?;
-        let native = self.native.as_ref().map(NativeFiles::complex).transpose()?;
+        let native = self.native.as_deref();
+        let native = native.map(NativeFiles::complex).transpose()?;
         let natives = native.iter().flat_map(NativeFiles::inputs);
         let read = files.iter().chain(&self.confidence).map(PathBuf::as_path);
         let read = read.chain(natives.map(|input| input.record.path.as_path()));

@@ -61,7 +61,7 @@ impl NativeArguments {
 
 impl NativeFiles {
     /// Reads one file with both partners.
-    pub fn complex(file: &String) -> Result<Self, Error> {
+    pub fn complex(file: &str) -> Result<Self, Error> {
         let [first] = Input::read_all([file], &ReadOptions::default())?;
         Ok(Self {
             first,
