@@ -222,7 +222,7 @@ fn alphafold_models_have_tokens_of_atoms() {
         .iter()
         .zip(&rows[0])
         .skip(6)
-        .filter(|(name, _)| !name.starts_with("chain_"))
+        .filter(|(name, _)| !name.starts_with("chain_") && !pair[*name].is_string())
     {
         let value = pair[name]
             .as_f64()
@@ -346,7 +346,25 @@ fn folders_hold_models_of_several_seeds() {
             (&pair["agreement"], &pair["cluster_size"]),
             (&json!(1.0), &json!(3))
         );
+        // Three models agree too easily to support the interface.
+        let evidence = pair["evidence"].as_str().unwrap();
+        assert!(
+            evidence.contains("agreement open (1.00 of 3 models)"),
+            "{evidence}"
+        );
+        assert_ne!(pair["trust"], "likely");
     }
+    // The system has the word of the model of the highest ipTM.
+    let text = run(folder.path(), "models .");
+    let evidence = found[0]["pairs"][0]["evidence"].as_str().unwrap();
+    let line = text
+        .lines()
+        .find(|line| line.starts_with("Chains A B, "))
+        .unwrap();
+    assert!(
+        line.contains("by ./pred.model_idx_0.cif (highest ipTM): ") && line.contains(evidence),
+        "{line}"
+    );
     write(
         folder.path(),
         "x_scores_rank_001_seed_009.json",
@@ -394,6 +412,12 @@ fn structures_without_confidence_have_coordinates() {
         assert_eq!(pair[name], interface["complexes"][0][name], "{name}");
     }
     assert!(pair["contacts"].as_u64().unwrap() > 0);
+    let evidence = pair["evidence"].as_str().unwrap();
+    assert!(
+        evidence.starts_with("confidence unknown; agreement unknown (one model); coordinates"),
+        "{evidence}"
+    );
+    assert_ne!(pair["trust"], "likely");
     for name in ["iptm", "ipsae", "pdockq", "pdockq2", "lis", "interface_pae"] {
         assert!(pair[name].is_null(), "{name}");
     }
@@ -430,4 +454,119 @@ fn confidence_of_other_models_is_refused() {
     assert!(refusal(&["x.pdb", "--confidence", "nan.json"]).contains("no confidences"));
     assert!(refusal(&["x.pdb", "y.pdb", "--confidence", "other.json"]).contains("2 are given"));
     assert!(refusal(&["single.pdb"]).contains("there is no pair of chains"));
+}
+
+/// A structure of the example complex, 1PPE.
+fn example(name: &str) -> String {
+    let folder = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/..")).join("structures/examples");
+    fs::read_to_string(folder.join(name)).unwrap()
+}
+
+/// Atoms under another chain name, shifted along x by some Å.
+fn moved(text: &str, chain: &str, shift: f64) -> String {
+    let line = |line: &str| {
+        let x: f64 = line[30..38].trim().parse().unwrap();
+        format!(
+            "{}{chain}{}{:8.3}{}\n",
+            &line[..21],
+            &line[22..30],
+            x + shift,
+            &line[38..]
+        )
+    };
+    let atoms = text.lines().filter(|line| line.starts_with("ATOM"));
+    atoms.map(line).collect()
+}
+
+/// With a known complex, models have the figures of `knotdock evaluate`, whatever their chains are called; pairs of chains
+/// that it does not have stay without.
+#[test]
+fn models_are_measured_against_a_known_complex() {
+    let folder = tempfile::tempdir().unwrap();
+    let sides = ["receptor", "ligand"].map(|side| example(&format!("1ppe_{side}_bound.pdb")));
+    let [receptor, ligand] = &sides;
+    write(
+        folder.path(),
+        "native.pdb",
+        moved(receptor, "E", 0.0) + &moved(ligand, "I", 0.0),
+    );
+    // The ligand comes first, and is out of place.
+    let pair = moved(ligand, "X", 1.5) + &moved(receptor, "Y", 0.0);
+    write(folder.path(), "pair.pdb", &pair);
+    let found = models(folder.path(), "pair.pdb --native native.pdb -o pair.csv");
+    let measured = &found[0]["pairs"][0];
+    let evaluated: Value = serde_json::from_str(&run(
+        folder.path(),
+        "evaluate pair.pdb --native native.pdb --json",
+    ))
+    .unwrap();
+    let columns = [
+        "irmsd",
+        "lrmsd",
+        "fnat",
+        "dockq",
+        "capri",
+        "interface_share",
+    ];
+    for name in columns.iter().chain(&["native_chains"]) {
+        assert_eq!(measured[name], evaluated["complexes"][0][name], "{name}");
+    }
+    let dockq = measured["dockq"].as_f64().unwrap();
+    assert!(0.3 < dockq && dockq < 0.95, "{dockq}");
+    assert_eq!(measured["native_chains"], "X:I,Y:E");
+    let table = fs::read_to_string(folder.path().join("pair.csv")).unwrap();
+    assert!(
+        table
+            .lines()
+            .next()
+            .unwrap()
+            .ends_with("dockq,capri,interface_share,native_chains")
+    );
+    // Without a known complex there are no such columns.
+    assert!(
+        models(folder.path(), "pair.pdb")[0]["pairs"][0]
+            .get("dockq")
+            .is_none()
+    );
+    let third = moved(&pdb(&atoms(["Z", "z"], false)[..150]), "Z", 0.0);
+    write(folder.path(), "three.pdb", pair + &third);
+    let found = models(folder.path(), "three.pdb --native native.pdb");
+    let pairs = found[0]["pairs"].as_array().unwrap();
+    assert_eq!(pairs.len(), 3);
+    assert_eq!(pairs[0]["dockq"].as_f64(), Some(dockq));
+    assert!(pairs[1]["dockq"].is_null() && pairs[2]["capri"].is_null());
+    // A known complex of other proteins.
+    write(folder.path(), "made.pdb", pdb(&atoms(["A", "B"], false)));
+    refused(
+        folder.path(),
+        ["models", "made.pdb", "--native", "native.pdb"],
+    );
+}
+
+/// A report holds no name unescaped, and is written only over a file that may be replaced.
+#[test]
+fn reports_of_models_hold_names_as_text() {
+    let folder = tempfile::tempdir().unwrap();
+    let atoms = atoms(["A", "B"], false);
+    let name = "<img src=x>.pdb";
+    write(folder.path(), name, pdb(&atoms));
+    let words = ["models", name, "--report", "report.html"];
+    let write_report = |more: &[&str]| {
+        let mut command = assert_cmd::cargo::cargo_bin_cmd!("knotdock");
+        command
+            .current_dir(folder.path())
+            .args(words)
+            .args(more)
+            .assert()
+    };
+    write_report(&[]).success();
+    let page = fs::read_to_string(folder.path().join("report.html")).unwrap();
+    assert!(page.contains("Content-Security-Policy") && !page.contains("<img src=x>"));
+    write_report(&[]).code(2);
+    write_report(&["--force"]).success();
+    // The same bytes again.
+    assert_eq!(
+        page,
+        fs::read_to_string(folder.path().join("report.html")).unwrap()
+    );
 }

@@ -6,7 +6,7 @@
     run.poses.plot.scatter("irmsd", "score")
 
 `dock` docks two structures; `Run` opens what a run left. `batch`, `merge` and `screen` are for many pairs. `score`,
-`evaluate`, `interface`, `inspect`, `sample`, `collide`, `obstacle` and `morph` are the other commands. `Molecule` reads
+`evaluate`, `interface`, `models`, `inspect`, `sample`, `collide`, `obstacle` and `morph` are the other commands. `Molecule` reads
 structures into arrays, and `Correlator` correlates balls with weights of one's own. `run_command` runs any command by
 its name. In a notebook, runs, molecules and balls show a table and a `View`.
 """
@@ -17,12 +17,14 @@ from knotdock.docking import dock
 from knotdock.errors import InputError, KnotdockError
 from knotdock.functions import (
     Balls,
+    Models,
     batch,
     collide,
     evaluate,
     inspect,
     interface,
     merge,
+    models,
     morph,
     obstacle,
     sample,
@@ -42,6 +44,7 @@ __all__ = [
     "InputError",
     "KnotdockError",
     "KnotdockWarning",
+    "Models",
     "Molecule",
     "Run",
     "View",
@@ -53,6 +56,7 @@ __all__ = [
     "interface",
     "iterate_poses",
     "merge",
+    "models",
     "morph",
     "obstacle",
     "options",

@@ -86,7 +86,7 @@ def words_of(options: dict[str, Any]) -> list[str]:
         elif name in _of_files():
             line = value if isinstance(value, (int, float)) else json.dumps(text_of(value))
             words.append(f"--config={_of_files()[name]}.{name}={line}")
-        elif name == "config" and isinstance(value, (list, tuple)):
+        elif name in ("config", "confidence") and isinstance(value, (list, tuple)):
             words += [f"{option}={text_of(file)}" for file in value]
         else:
             words.append(f"{option}={text_of(value)}")

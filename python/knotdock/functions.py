@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import html
+import io
 import os
 import pathlib
 import tempfile
@@ -12,17 +14,19 @@ import numpy as np
 
 from knotdock.commands import run_command
 from knotdock.inputs import given
-from knotdock.tables import read_table
+from knotdock.tables import Frame, read_table
 from knotdock.view import View, table_html
 
 __all__ = [
     "Balls",
+    "Models",
     "batch",
     "collide",
     "evaluate",
     "inspect",
     "interface",
     "merge",
+    "models",
     "morph",
     "obstacle",
     "sample",
@@ -55,6 +59,77 @@ def evaluate(models: Any, native: Any, **options: Any) -> list[dict[str, Any]]:
         files = [given(model, lambda: place, f"model_{number}") for number, model in enumerate(many, 1)]
         known = given(native, lambda: place, "native")
         return run_command("evaluate", *files, *chains, native=known, **options)["complexes"]
+
+
+class Models:
+    """Predicted models of complexes, rated by their confidence and their coordinates.
+
+    Attributes:
+        models: a dict for each model with its `pairs` of chains.
+        systems: a dict for each pair of chains in all models that have it, with `trust` and its `evidence`.
+    """
+
+    def __init__(self, report: dict[str, Any], table: str) -> None:
+        self.models, self.systems = report["models"], report["systems"]
+        self._table = table
+
+    def __len__(self) -> int:
+        return len(self.models)
+
+    def __repr__(self) -> str:
+        return f"<{len(self)} models>"
+
+    def _repr_html_(self) -> str:
+        """The main columns as a table, and the trust in each pair of chains."""
+        table = self.table("numpy")
+        names = [name for name in _MODELS_SHOWN if name in table]
+        rows = list(zip(*(table[name].tolist() for name in names), strict=True))
+        trust = [
+            f"Chains {one['chain_1']} {one['chain_2']}: {one['trust']} ({one['evidence']})" for one in self.systems
+        ]
+        words = "".join(f"<p>{html.escape(text)}</p>\n" for text in trust)
+        return table_html(f"{len(self)} models", names, rows) + words
+
+    def table(self, frame: Frame = "pandas") -> Any:
+        """One row for each pair of chains of each model; see docs/reference/models_csv.md for the columns.
+
+        Args:
+            frame: `"pandas"`, `"polars"` or `"numpy"`, a dict of arrays by column.
+        """
+        return read_table(io.StringIO(self._table), frame)
+
+
+# Columns of the table in a notebook's cell.
+_MODELS_SHOWN = (
+    *("file", "chain_1", "chain_2", "trust", "iptm", "ipsae", "pdockq2", "agreement"),
+    *("dockq", "capri"),
+)
+
+
+def models(
+    paths: Any,
+    *,
+    confidence: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
+    native: Any = None,
+    **options: Any,
+) -> Models:
+    """Rate predicted models of complexes.
+
+    Args:
+        paths: a structure, a directory of models with their confidence files, or a list of these.
+        confidence: confidence files of the one structure given, in place of those beside it.
+        native: the known complex, as an input of `dock`; the table then has irmsd, lrmsd, fnat, dockq and capri.
+        options: options of `knotdock models`, such as `pae_cutoff=15` and `report="models.html"`.
+    """
+    many = paths if isinstance(paths, list) else [paths]
+    files = [confidence] if isinstance(confidence, (str, os.PathLike)) else confidence
+    with tempfile.TemporaryDirectory(prefix="knotdock-") as folder:
+        place = pathlib.Path(folder)
+        table = place / "models.csv"
+        found = [given(model, lambda: place, f"model_{number}") for number, model in enumerate(many, 1)]
+        known = None if native is None else given(native, lambda: place, "native")
+        report = run_command("models", *found, confidence=files, native=known, output=table, **options)
+        return Models(report, table.read_text(encoding="utf-8"))
 
 
 def score(receptor: Any, ligand: Any, pose: Sequence[float] | None = None, **options: Any) -> dict[str, Any]:

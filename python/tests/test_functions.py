@@ -60,6 +60,31 @@ def test_complexes_are_evaluated_and_measured():
     assert knotdock.interface(native, "A", "B")
 
 
+def test_models_are_rated(tmp_path):
+    dimer = pathlib.Path(EXAMPLES, "4e43_dimer.pdb").read_text()
+    path = tmp_path / "<b>.pdb"
+    path.write_text(dimer)
+    scores, more = tmp_path / "scores.json", tmp_path / "more.json"
+    scores.write_text(json.dumps({"iptm": 0.875}))
+    more.write_text(json.dumps({"ptm": 0.75}))
+    found = knotdock.models(path, confidence=[scores, more], native=dimer)
+    table = found.table("numpy")
+    assert table["iptm"].tolist() == [0.875]
+    assert table["model_ptm"].tolist() == [0.75]
+    assert table["dockq"][0] == pytest.approx(1.0)
+    assert table["trust"].tolist() == [found.systems[0]["trust"]] == ["uncertain"]
+    assert [pair["iptm"] for pair in found.models[0]["pairs"]] == [0.875]
+    page = found._repr_html_()
+    assert "&lt;b&gt;.pdb" in page
+    assert "<b>" not in page
+    assert "agreement unknown (one model)" in page
+    bare = knotdock.models([dimer, path])
+    assert len(bare) == 2
+    assert "dockq" not in bare.table("numpy")
+    with pytest.raises(knotdock.InputError):
+        knotdock.models([dimer, path], confidence=scores)
+
+
 def test_molecules_are_arrays(helices):
     molecule = knotdock.Molecule.read(helices[0])
     assert molecule.positions.shape == (len(molecule), 3)

@@ -30,16 +30,25 @@ pub fn shape_complementarity(molecules: [&Molecule; 2]) -> Option<f64> {
         let balls = atoms.map(|atom| (Vector3::from(atom.position), atom.radius));
         balls.collect()
     };
-    let sides = molecules.map(heavy);
-    let all = sides.iter().flatten();
-    let count = all.clone().count().max(1) as f64;
-    let middle = all.map(|(center, _)| center).sum::<Vector3<f64>>() / count;
-    let sides = sides.map(|side| -> Vec<(Vector3<f64>, f64)> {
-        let balls = side.into_iter();
-        balls
-            .map(|(center, radius)| (center - middle, radius))
-            .collect()
-    });
+    let all = molecules.map(heavy);
+    let balls = || all.iter().flatten();
+    let count = balls().count().max(1) as f64;
+    let middle = balls().map(|(center, _)| center).sum::<Vector3<f64>>() / count;
+    // Dots are within NEAR of the other side. Balls that a probe touches with theirs are one step farther, and those that
+    // keep it from there another one.
+    let largest = balls().fold(0.0, |largest: f64, (_, radius)| largest.max(*radius));
+    let reach = NEAR + 4.0 * (largest + PROBE);
+    let [first, second] = molecules;
+    let sides = [first.near(second, reach), second.near(first, reach)];
+    let sides = sides
+        .each_ref()
+        .map(heavy)
+        .map(|side| -> Vec<(Vector3<f64>, f64)> {
+            let balls = side.into_iter();
+            balls
+                .map(|(center, radius)| (center - middle, radius))
+                .collect()
+        });
     of_balls([&sides[0], &sides[1]])
 }
 
@@ -52,7 +61,7 @@ fn of_balls(sides: [&[(Vector3<f64>, f64)]; 2]) -> Option<f64> {
         });
         CellList::new(members.collect(), NEAR)
     });
-    let buried: [Vec<SurfaceDot>; 2] = std::array::from_fn(|side| {
+    let of_side = |side: usize| -> Vec<SurfaceDot> {
         let spheres = sides[side].iter().map(|&(center, radius)| {
             let mut has_dots = false;
             cells[1 - side].visit_within(center.into(), NEAR, |_, _| has_dots = true);
@@ -64,7 +73,8 @@ fn of_balls(sides: [&[(Vector3<f64>, f64)]; 2]) -> Option<f64> {
         });
         let dots = surface_dots(&spheres.collect::<Vec<_>>(), PROBE, DENSITY);
         without_rim(dots, &cells[1 - side])
-    });
+    };
+    let buried: [Vec<SurfaceDot>; 2] = rayon::join(|| of_side(0), || of_side(1)).into();
     let medians = [0, 1].map(|side| median(&buried[side], &buried[1 - side]));
     Some(0.5 * (medians[0]? + medians[1]?))
 }

@@ -104,6 +104,15 @@ impl Interface {
             hydrogen_bond_distance: contact.hydrogen_bond_distance,
             salt_bridge: contact.salt_bridge,
         };
+        let (clashes, (buried, shape_complementarity)) = rayon::join(
+            || clashes([first, second], ph),
+            || {
+                rayon::join(
+                    || first.buried_areas(second, SURFACE_POINTS),
+                    || shape_complementarity([first, second]),
+                )
+            },
+        );
         Ok(Self {
             residues: [touching(0), touching(1)],
             hydrogen_bonds: contacts.iter().map(|contact| contact.hydrogen_bonds).sum(),
@@ -111,9 +120,9 @@ impl Interface {
                 .iter()
                 .filter(|contact| contact.salt_bridge)
                 .count(),
-            clashes: clashes([first, second], ph)?,
-            buried: first.buried_areas(second, SURFACE_POINTS),
-            shape_complementarity: shape_complementarity([first, second]),
+            clashes: clashes?,
+            buried,
+            shape_complementarity,
             pairs: contacts.iter().map(pair).collect(),
         })
     }

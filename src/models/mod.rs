@@ -1,9 +1,9 @@
 //! Predicted models of complexes: which of them to trust, by the confidence of their program and by their coordinates.
 //!
-//! [`PredictedModel::read`] reads a structure with the confidence files beside it and describes every pair of its
-//! chains: ipTM as the program reports it, the [`scores`] that PAE and pLDDT give, and its
+//! [`Prediction::read`] reads a structure with the confidence files beside it. [`Prediction::rated`] describes every pair of
+//! its chains: ipTM as the program reports it, the [`scores`] that PAE and pLDDT give, and its
 //! [`Interface`]. Sides are chains of proteins and nucleic acids; ligands and ions are none. [`systems`] compares the
-//! models of one system.
+//! models of one system, and [`trust`] gives each pair of chains a word.
 //!
 //! # Conventions
 //!
@@ -15,6 +15,7 @@ mod confidence_files;
 pub mod numpy;
 pub mod scores;
 pub mod tokens;
+pub mod trust;
 
 use std::path::{Path, PathBuf};
 
@@ -67,19 +68,29 @@ pub struct ChainPair {
     pub interface: Interface,
 }
 
-impl PredictedModel {
-    /// Reads a model, with given confidence files or, for `None`, those beside it.
-    ///
-    /// `cutoff` is the PAE in Å below which pairs of residues count for ipSAE, `ph` the pH of charges.
+/// A structure with its confidence, as read.
+#[derive(Clone, Debug)]
+pub struct Prediction {
+    /// The structure's file.
+    pub path: PathBuf,
+    /// The program whose names its confidence files have.
+    pub program: Option<Program>,
+    /// The confidence files that were read.
+    pub confidence_files: Vec<PathBuf>,
+    /// What they hold.
+    pub confidence: Option<Confidence>,
+    /// Its chains of proteins and nucleic acids, at least two.
+    pub polymers: Polymers,
+    /// These chains as molecules, each with the ligands and ions under its name.
+    pub molecules: Vec<Molecule>,
+}
+
+impl Prediction {
+    /// Reads a structure, with given confidence files or, for `None`, those beside it.
     ///
     /// # Errors
     /// [`Error`] if a file cannot be read, the confidence is not that of the structure, or there is no pair of chains.
-    pub fn read(
-        path: &Path,
-        confidence: Option<&[PathBuf]>,
-        cutoff: f64,
-        ph: f64,
-    ) -> Result<Self, Error> {
+    pub fn read(path: &Path, confidence: Option<&[PathBuf]>) -> Result<Self, Error> {
         let (program, files) = confidence_files(path);
         let files = confidence.map_or(files, <[PathBuf]>::to_vec);
         let options = ReadOptions {
@@ -101,37 +112,57 @@ impl PredictedModel {
             .at(path)
             .help("give models of complexes; ligands, ions and single residues are no sides"));
         }
-        let molecules: Vec<Molecule> = chains.iter().map(|one| chain_of(&molecule, one)).collect();
-        let places = (0..chains.len()).flat_map(|i| (i + 1..chains.len()).map(move |j| [i, j]));
-        let places: Vec<[usize; 2]> = places.collect();
-        let pairs = places.into_par_iter().map(|pair| {
+        Ok(Self {
+            path: path.to_owned(),
+            program: program.filter(|_| confidence.is_some()),
+            confidence_files: files,
+            confidence,
+            molecules: chains.iter().map(|one| chain_of(&molecule, one)).collect(),
+            polymers,
+        })
+    }
+
+    /// Places of both chains of every pair, in the order of the file.
+    pub fn pairs(&self) -> Vec<[usize; 2]> {
+        let count = self.polymers.chains.len();
+        let places = (0..count).flat_map(|i| (i + 1..count).map(move |j| [i, j]));
+        places.collect()
+    }
+
+    /// The ratings of the model and of its [`Prediction::pairs`].
+    ///
+    /// `cutoff` is the PAE in Å below which pairs of residues count for ipSAE, `ph` the pH of charges.
+    ///
+    /// # Errors
+    /// [`Error`] for a chain without atoms.
+    pub fn rated(&self, cutoff: f64, ph: f64) -> Result<PredictedModel, Error> {
+        let (confidence, chains) = (self.confidence.as_ref(), &self.polymers.chains);
+        let pairs = self.pairs().into_par_iter().map(|pair| {
             let sides = pair.map(|at| &chains[at]);
             Ok(ChainPair {
                 chains: sides.map(|chain| chain.name.clone()),
                 sequences: sides.map(|chain| chain.sequence.clone()),
-                iptm: confidence
-                    .as_ref()
-                    .and_then(|found| iptm(found, &polymers, sides)),
+                iptm: confidence.and_then(|found| iptm(found, &self.polymers, sides)),
                 scores: PairScores::of(
                     sides,
-                    confidence.as_ref().and_then(|found| found.pae.as_ref()),
+                    confidence.and_then(|found| found.pae.as_ref()),
                     cutoff,
                 ),
-                interface: Interface::of(pair.map(|at| &molecules[at]), ph)?,
+                interface: Interface::of(pair.map(|at| &self.molecules[at]), ph)?,
             })
         });
         let pairs = pairs.collect::<Result<Vec<ChainPair>, Error>>();
         let residues = chains.iter().flat_map(|chain| &chain.residues);
         let plddt: Option<Vec<f64>> = residues.map(|residue| residue.plddt).collect();
-        Ok(Self {
-            path: path.to_owned(),
-            program: program.filter(|_| confidence.is_some()),
-            iptm: confidence.as_ref().and_then(|found| found.iptm),
-            ptm: confidence.as_ref().and_then(|found| found.ptm),
-            ranking_score: confidence.as_ref().and_then(|found| found.ranking_score),
+        Ok(PredictedModel {
+            path: self.path.clone(),
+            program: self.program,
+            iptm: confidence.and_then(|found| found.iptm),
+            ptm: confidence.and_then(|found| found.ptm),
+            ranking_score: confidence.and_then(|found| found.ranking_score),
             plddt: plddt.map(|values| values.iter().sum::<f64>() / values.len() as f64),
-            pairs: pairs.map_err(|error| error.at(path))?,
-            confidence_files: files,
+            pairs: pairs.map_err(|error| error.at(&self.path))?,
+            confidence_files: self.confidence_files.clone(),
         })
     }
 }

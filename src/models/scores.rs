@@ -191,6 +191,7 @@ mod tests {
         plddt: f64,
     ) -> PolymerChain {
         let residue = |at: usize| Residue {
+            number: at.to_string(),
             token: first_token + at,
             position: [4.0 * at as f64, height, 0.0],
             plddt: Some(plddt),

@@ -25,6 +25,8 @@ const SAME_PLDDT: f64 = 2.0;
 /// An amino acid or nucleotide of a chain.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Residue {
+    /// The author's number and insertion code, as `52A`.
+    pub number: String,
     /// Its token: of a modified residue, that of CA or C1'.
     pub token: usize,
     /// Position in Å of CB, of CA if there is none, or of C3' of a nucleotide.
@@ -116,6 +118,7 @@ pub fn polymers(molecule: &Molecule, confidence: Option<&Confidence>) -> Result<
         chain.is_nucleic |= is_nucleic;
         chain.sequence += &atoms[first].residue_name;
         chain.residues.push(Residue {
+            number: ResidueName::of(&atoms[first]).number,
             token: token_of_atom[center],
             position: atoms[beta].position,
             plddt: None,

@@ -50,13 +50,12 @@ impl NativeArguments {
         let Some(first) = self.native.as_ref().or(self.native_receptor.as_ref()) else {
             return Ok(None);
         };
-        let read = |file: &String| {
-            let [input] = Input::read_all([file], &ReadOptions::default())?;
-            Ok::<_, Error>(input)
-        };
-        let ligand = self.native_ligand.as_ref().map(read).transpose()?;
-        let first = read(first)?;
-        Ok(Some(NativeFiles { first, ligand }))
+        let ligand = self.native_ligand.as_ref();
+        let ligand = ligand.map(|file| NativeFiles::complex(file)).transpose()?;
+        Ok(Some(NativeFiles {
+            ligand: ligand.map(|file| file.first),
+            ..NativeFiles::complex(first)?
+        }))
     }
 }
 
@@ -67,6 +66,15 @@ impl NativeFiles {
             first: receptor.clone(),
             ligand: Some(ligand.clone()),
         }
+    }
+
+    /// Reads one file with both partners.
+    pub fn complex(file: &str) -> Result<Self, Error> {
+        let [first] = Input::read_all([file], &ReadOptions::default())?;
+        Ok(Self {
+            first,
+            ligand: None,
+        })
     }
 
     /// Reads the files that a run recorded.

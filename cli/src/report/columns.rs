@@ -41,6 +41,18 @@ member|Member of the ensemble|-|main
 member_rank|Rank in the member's run|0|
 receptor_model|Conformation of the receptor|-|main
 ligand_model|Conformation of the ligand|-|main
+trust|Trust in the pair: likely, uncertain or doubtful|-|main
+evidence|Verdicts of confidence, agreement and coordinates|-|
+chain_1|First chain|-|main
+chain_2|Second chain|-|main
+iptm|ipTM of the pair, as the program reports it|2|main
+ipsae|ipSAE, the larger one of both directions|3|main
+pdockq2|pDockQ2, the larger one of both directions|3|main
+interface_pae|Mean PAE of residues in contact, Å|1|
+interface_plddt|Mean pLDDT of residues in contact|0|
+buried_area|Accessible surface that the chains take from each other, Å²|0|main
+shape_complementarity|Sc: about 0.7 in most interfaces|2|main
+agreement|Share of contacts in common with the other models|2|main
 other_copies|Contacts with further copies of a ring|1|";
 
 fn described(name: &str) -> Option<ShownColumn> {

@@ -15,7 +15,7 @@ use knotdock::output::records::program::VERSION_WITH_COMMIT;
 use knotdock_structures::Error;
 
 /// The scripts of a report, in the order in which each uses those before it.
-const SCRIPTS: [&str; 10] = [
+const SCRIPTS: [&str; 11] = [
     include_str!("page/packed.js"),
     include_str!("page/table.js"),
     include_str!("page/charts.js"),
@@ -25,6 +25,7 @@ const SCRIPTS: [&str; 10] = [
     include_str!("page/run.js"),
     include_str!("page/list.js"),
     include_str!("page/solids.js"),
+    include_str!("page/models.js"),
     include_str!("page/main.js"),
 ];
 

@@ -1,4 +1,4 @@
-const PAGES = { run: showRun, list: showList, solids: showSolids };
+const PAGES = { run: showRun, list: showList, solids: showSolids, models: showModels };
 
 unpacked("data").then((text) => {
   const data = JSON.parse(text);

@@ -57,16 +57,35 @@ impl Molecule {
     /// the other. The same `points` on each sphere are used alone and together, so that only those near the interface
     /// count.
     pub fn buried_areas(&self, other: &Molecule, points: usize) -> [f64; 2] {
-        let atoms = self.atoms.iter().chain(&other.atoms).cloned().collect();
+        let radii = self.atoms.iter().chain(&other.atoms);
+        let largest = radii.map(|atom| atom.radius + PROBE).fold(0.0, f64::max);
+        // Atoms within two radii of the other side can lose area, and that much farther are those beside them.
+        let [first, second] =
+            [(self, other), (other, self)].map(|(one, other)| one.near(other, 4.0 * largest));
+        let atoms = first.atoms.iter().chain(&second.atoms).cloned().collect();
         let together = Molecule::new(atoms, self.format).accessible_areas(points);
-        let (first, second) = together.split_at(self.atoms.len().min(together.len()));
+        let (one, two) = together.split_at(first.atoms.len().min(together.len()));
         let lost = |alone: Vec<f64>, together: &[f64]| -> f64 {
             alone.iter().zip(together).map(|(a, b)| a - b).sum()
         };
         [
-            lost(self.accessible_areas(points), first),
-            lost(other.accessible_areas(points), second),
+            lost(first.accessible_areas(points), one),
+            lost(second.accessible_areas(points), two),
         ]
+    }
+
+    /// The atoms within `reach` Å of any of another molecule, in one frame.
+    pub fn near(&self, other: &Molecule, reach: f64) -> Molecule {
+        let mut cells = SpatialHash::new(reach);
+        for atom in &other.atoms {
+            cells.push(atom.position, atom.position);
+        }
+        let is_near = |atom: &&Atom| {
+            let mut around = cells.around(atom.position);
+            around.any(|&at| squared_distance(at, atom.position) <= reach * reach)
+        };
+        let atoms = self.atoms.iter().filter(is_near).cloned();
+        Molecule::new(atoms.collect(), self.format)
     }
 
     /// The atoms but for those that have the position and the radius of an earlier one.
@@ -163,6 +182,29 @@ mod tests {
             let share = free.count() as f64 / 50.0;
             assert!((found[index] - 4.0 * PI * grown * grown * share).abs() < 1e-9);
         }
+    }
+
+    /// Atoms that are far from the other side lose nothing: without them the area is the same, to the last bit.
+    #[test]
+    fn buried_areas_are_those_of_whole_molecules() {
+        let place = |step: f64, i: usize| 40.0 * (step * i as f64).sin();
+        let side = |far: f64| {
+            let place = |i: usize| [place(1.3, i) + far, place(2.1, i), place(0.7, i)];
+            let list: Vec<_> = (0..3000)
+                .map(|i| (place(i), 1.2 + 0.1 * (i % 8) as f64))
+                .collect();
+            balls(&list)
+        };
+        let (a, b) = (side(0.0), side(75.0));
+        let both = Molecule::new([a.atoms.clone(), b.atoms.clone()].concat(), a.format);
+        let together = both.accessible_areas(100);
+        let lost = |one: &Molecule, from: usize| -> f64 {
+            let alone = one.accessible_areas(100).into_iter();
+            alone.zip(&together[from..]).map(|(a, b)| a - b).sum()
+        };
+        let buried = a.buried_areas(&b, 100);
+        assert_eq!(buried, [lost(&a, 0), lost(&b, 3000)]);
+        assert!(buried[0] > 100.0 && a.near(&b, 10.0).atoms.len() < 1000);
     }
 
     /// Closed form: two expanded spheres cut caps of height h off each other (2 pi R h); far ones take nothing.
