@@ -166,6 +166,14 @@ class DockOptions(TypedDict, total=False):
     active_ligand: str | float | Sequence[object]
     """Residues of the ligand that are thought to be in contact. Written as those of --active-receptor."""
 
+    site_receptor: str | float | Sequence[object]
+    """Residues of the receptor among which the ligand binds, such as an epitope and its surroundings. They are
+    active, and all other residues of the receptor are blocked. Written as those of --block-receptor."""
+
+    site_ligand: str | float | Sequence[object]
+    """Residues of the ligand among which the receptor binds. They are active, and all other residues of the
+    ligand are blocked."""
+
     restraints: str | os.PathLike[str]
     """Distances that are known between receptor and ligand: a table, or a .tbl of HADDOCK and CNS. The columns
     of the table are receptor, ligand, lower, target, upper and group. Residues are written as A:57, atoms as
@@ -245,8 +253,9 @@ class DockOptions(TypedDict, total=False):
     copy, or of both rings."""
 
     cluster_radius: float | str
-    """RMSD within which poses form a cluster, over the ligand's CA atoms. For meshes it is over the sample
-    points, and the default is 2.273 times the offset. [default: 5]"""
+    """RMSD within which poses form a cluster, over the ligand's CA atoms. The default is 9 if active residues,
+    a site or restraints are given. For meshes the radius is over the sample points, and the default is 2.273
+    times the offset. [default: 5]"""
 
     sharp: Literal["auto", "on", "off"]
     """Fit the best poses at atomic resolution: auto, on or off. auto ranks by these fits if one stands out as
