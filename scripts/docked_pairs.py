@@ -128,6 +128,22 @@ def first_ranks(qualities):
     return ranks
 
 
+def ranks_of_run(knotdock, run, native):
+    """The first ranks of a run's `poses` and `clusters`, each cluster by its best pose.
+
+    The run lists every pose (`--no-cluster`); `native` is as in `evaluate`.
+    """
+    qualities = evaluate(knotdock, run, native)
+    with open(run / "poses.csv", newline="") as file:
+        rows = list(csv.DictReader(file))
+    # Rows come best first, so the first of a cluster is its best; clusters are numbered in their own order.
+    clusters = {}
+    for row, quality in zip(rows, qualities):
+        clusters.setdefault(int(row["cluster"]), quality)
+    of_clusters = [quality for _, quality in sorted(clusters.items())]
+    return {"poses": first_ranks(qualities), "clusters": first_ranks(of_clusters)}
+
+
 def log_rank(rank):
     """Logarithm of a rank; None and infinity are ranks of poses that were not found."""
     return math.log(min(rank or math.inf, NOT_FOUND))

@@ -152,8 +152,11 @@ pub fn redock(
     let rotations = plan.search.rotations.coarse.iter();
     let angles = rotations.map(|rotation| rotation.angle_to(&predicted.rotation));
     Ok(Redocking {
-        agreement: match near.map(|near| near.cluster) {
-            Some(cluster) if cluster <= Some(FIRST_CLUSTERS) => Agreement::Agrees,
+        agreement: match near {
+            Some(NearRow {
+                cluster: Some(..=FIRST_CLUSTERS),
+                ..
+            }) => Agreement::Agrees,
             Some(_) => Agreement::FoundLower,
             None => Agreement::DoesNotAgree,
         },

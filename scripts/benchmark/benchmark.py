@@ -31,7 +31,6 @@ Needs Python 3.9 or later and nothing else.
 
 import argparse
 import concurrent.futures
-import csv
 import hashlib
 import json
 import shutil
@@ -45,13 +44,12 @@ from docked_pairs import (
     PARTS,
     SPLITS,
     check_known,
-    evaluate,
     find_part,
-    first_ranks,
     fold,
     in_fold,
     names,
     native_options,
+    ranks_of_run,
     read_text,
     select,
     write,
@@ -218,18 +216,7 @@ def dock_and_measure(options, folder, files, name, seed):
     timings = [json.loads(record.read_text())["timing"] for record in records_of(run)]
     own_peak = max(timing["peak_memory_bytes"] or 0 for timing in timings)
     cost["peak_memory_bytes"] = own_peak or cost["peak_memory_bytes"]
-    qualities = evaluate(options.knotdock, run, native_options(options.folder / name))
-    with open(run / "poses.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    # Rows come best first, so the first of a cluster is its best; clusters are numbered in their own order.
-    clusters = {}
-    for row, quality in zip(rows, qualities):
-        clusters.setdefault(int(row["cluster"]), quality)
-    return {
-        **cost,
-        "poses": first_ranks(qualities),
-        "clusters": first_ranks([quality for _, quality in sorted(clusters.items())]),
-    }
+    return {**cost, **ranks_of_run(options.knotdock, run, native_options(options.folder / name))}
 
 
 def predictions(folder, name):

@@ -3,7 +3,8 @@
 Imported by benchmark.py, whose option --restraints gives them to each docking. Distances are between CA atoms of the
 bound structures, which are superposed as in the complex:
 
-- `pair`: one residue pair that is within 10 Å, given as 12 Å.
+- `pair`: one residue pair that is within 10 Å.
+- `loose_pair`: the same pair, given as 12 Å.
 - `group`: one ambiguous restraint, of all contact residues of the receptor to all of the ligand: 3 Å.
 - `crosslinks`: five cross-links of DSS, of which a pose has to satisfy three. Three are true (10 to 25 Å), two are
   false (35 Å or more; the farthest pairs where none is so far).
@@ -14,7 +15,7 @@ import random
 
 from known_residues import atoms, chains_by_number, order, residues_within
 
-KINDS = ("pair", "group", "crosslinks")
+KINDS = ("pair", "loose_pair", "group", "crosslinks")
 TRUE_LINK, FALSE_LINK = (10, 25), 35  # Å
 
 
@@ -25,12 +26,13 @@ def restraint_options(kind, texts, name, seed, path):
     matched by number; those that an unbound file lacks are not drawn.
     """
     alphas = [known_alphas(texts, side, name) for side in ("receptor", "ligand")]
-    source = random.Random(f"{name} {seed} {kind}")
+    source = random.Random(f"{name} {seed} {kind.removeprefix('loose_')}")
     if kind == "group":
         rows = group_rows(texts, alphas)
-    elif kind == "pair":
+    elif kind in ("pair", "loose_pair"):
+        bound = 10 if kind == "pair" else 12
         near = [pair for pair, distance in pairs(*alphas) if distance <= 10]
-        rows = [f"{atom(a)},{atom(b)},12," for a, b in [source.choice(near)]]
+        rows = [f"{atom(a)},{atom(b)},{bound}," for a, b in [source.choice(near)]]
     else:
         rows = [f"{atom(a)},{atom(b)},," for a, b in crosslinks(alphas, source)]
     path.write_text("\n".join(["receptor,ligand,upper,group", *rows, ""]))

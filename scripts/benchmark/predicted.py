@@ -31,7 +31,7 @@ import sys
 from pathlib import Path
 
 sys.path.insert(0, str(Path(__file__).resolve().parent.parent))
-from docked_pairs import evaluate, first_ranks, names, read_text, write
+from docked_pairs import names, ranks_of_run, read_text, write
 from docking import find_program, measured, split_arguments, start_orientation
 
 DEPTHS = (1, 5, 10, 20, 48, 100)
@@ -121,19 +121,9 @@ def dock(options, pair):
     own = chains(antibody[0])
     others = [chain for chain in chains(read_text(native)) if chain not in own]
     known = [f"--native-{side}={native}:{','.join(of)}" for side, of in (("receptor", own), ("ligand", others))]
-    qualities = evaluate(options.knotdock, folder / "run", known)
-    with open(folder / "run/poses.csv", newline="") as file:
-        rows = list(csv.DictReader(file))
-    # Rows come best first, so the first of a cluster is its best; clusters are numbered in their own order.
-    clusters = {}
-    for row, quality in zip(rows, qualities):
-        clusters.setdefault(int(row["cluster"]), quality)
-    of_clusters = [quality for _, quality in sorted(clusters.items())]
-    result = {
-        "clusters": first_ranks(of_clusters)["acceptable"],
-        "poses": first_ranks(qualities)["acceptable"],
-        "cpu_seconds": round(cost["cpu_seconds"], 1),
-    }
+    ranks = ranks_of_run(options.knotdock, folder / "run", known)
+    result = {ranking: first["acceptable"] for ranking, first in ranks.items()}
+    result["cpu_seconds"] = round(cost["cpu_seconds"], 1)
     write(record, json.dumps(result))
     return result
 

@@ -129,12 +129,6 @@ impl ModelsCommand {
             let table = StagedFile::write(path, |file| write_table(file, &columns, &rows))?;
             staged.push((table, path));
         }
-        console.say(text(&found.models, &systems, &rows, native.is_some()));
-        let entries: Vec<Value> = systems.iter().map(|one| entry(one, &rows)).collect();
-        console.result(&json!({
-            "models": objects(&found.models, &rows, native.is_some()),
-            "systems": entries,
-        }))?;
         if let Some(path) = &self.report {
             let sentences = systems.iter().map(|one| sentence(one, &rows));
             let sentences = sentences.collect();
@@ -142,6 +136,13 @@ impl ModelsCommand {
             staged.push((write_text(path, &page)?, path));
         }
         place_all(staged)?;
+        // After all that may fail, so that a failure is the only result.
+        console.say(text(&found.models, &systems, &rows, native.is_some()));
+        let entries: Vec<Value> = systems.iter().map(|one| entry(one, &rows)).collect();
+        console.result(&json!({
+            "models": objects(&found.models, &rows, native.is_some()),
+            "systems": entries,
+        }))?;
         Ok(found.code)
     }
 }
