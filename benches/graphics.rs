@@ -9,8 +9,9 @@
 mod example;
 
 use knotdock_scoring::Precision;
-use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine, LigandRotation};
+use knotdock_scoring::engine::gpu::{GpuEngine, LigandRotation};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
+use knotdock_scoring::gpu::{ADAPTER_VARIABLE, GpuDevice};
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::PeakLimits;
 use knotdock_scoring::quantity::Quantity;

@@ -36,6 +36,7 @@
 //! | [`transform`] | knots to modes and modes to grids |
 //! | [`lifted_axis`] | the fourth axis: modes along the radius |
 //! | [`engine`] | the correlation over all translations at a rotation: plan, rank, CPU, graphics processor |
+//! | `gpu` | graphics processors, with the feature of this name |
 //! | [`truncated`] | the correlation at one pose from chosen modes |
 //! | [`overlap`] | overlap energy of weighted balls at one pose: force, torque, certified hits |
 //! | [`potential_grid`] | score and gradient between the voxels |
@@ -51,6 +52,8 @@ mod distance_floors;
 pub mod engine;
 pub mod exact;
 pub mod exact_sum;
+#[cfg(feature = "gpu")]
+pub mod gpu;
 pub mod grid_turn;
 pub mod kernel;
 mod lanes;

@@ -9,7 +9,9 @@ use knotdock_structures::Error;
 use serde::Serialize;
 
 #[cfg(feature = "gpu")]
-use knotdock_scoring::engine::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuEngine};
+use knotdock_scoring::engine::gpu::GpuEngine;
+#[cfg(feature = "gpu")]
+use knotdock_scoring::gpu::{ADAPTER_VARIABLE, GpuDevice};
 #[cfg(feature = "gpu")]
 use knotdock_scoring::peaks::NEIGHBOURS;
 

@@ -4,7 +4,7 @@
 //! instead. Any adapter will do, also one in software (Debian's mesa-vulkan-drivers), which `.ci/run` installs where it
 //! may.
 
-use knotdock_scoring::engine::gpu::GpuDevice;
+use knotdock_scoring::gpu::GpuDevice;
 
 /// The first adapter.
 pub fn adapter() -> Option<GpuDevice> {

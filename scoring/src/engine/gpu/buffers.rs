@@ -1,8 +1,8 @@
 //! The sizes of a batch and the buffers that it works in.
 
-use super::device::{GpuDevice, GpuError};
 use crate::engine::columns::Reading;
 use crate::engine::cpu::Transforms;
+use crate::gpu::{GpuDevice, GpuError};
 use crate::transform::Real;
 use crate::transform::modes::place;
 use bytemuck::{Pod, Zeroable};

@@ -8,13 +8,10 @@
 //! additions: one card gives the same bits each time.
 
 mod buffers;
-mod device;
-mod line_fft;
 mod stages;
 
-pub use device::{ADAPTER_VARIABLE, GpuDevice, GpuError};
-
 use super::cpu::{CpuEngine, Transforms};
+use crate::gpu::{GpuDevice, GpuError};
 use crate::grid_turn::GridTurn;
 use crate::precision::of_precision;
 use crate::transform::Real;

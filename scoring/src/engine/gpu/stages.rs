@@ -1,8 +1,8 @@
 //! The stages of a batch: what each computes, on which buffers, in how many workgroups.
 
 use super::buffers::{Buffers, Sizes};
-use super::device::{GpuDevice, GpuError};
-use super::line_fft::{self, Direction, WIDTH, radices, twiddles};
+use crate::gpu::line_fft::{self, Direction, WIDTH, radices, twiddles};
+use crate::gpu::{GpuDevice, GpuError};
 use std::ops::Range;
 use wgpu::util::DeviceExt;
 

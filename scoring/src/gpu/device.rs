@@ -56,8 +56,8 @@ fn joined(found: &[String]) -> String {
 /// An opened graphics processor.
 #[derive(Clone)]
 pub struct GpuDevice {
-    pub(super) device: wgpu::Device,
-    pub(super) queue: wgpu::Queue,
+    pub(crate) device: wgpu::Device,
+    pub(crate) queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
     /// The first error that no call returned.
     failure: Arc<Mutex<Option<String>>>,
@@ -131,7 +131,7 @@ impl GpuDevice {
     }
 
     /// Waits until a submission is done.
-    pub(super) fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
+    pub(crate) fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
         let waited = self.device.poll(wgpu::PollType::Wait {
             submission_index: Some(submission),
             timeout: Some(PATIENCE),
@@ -144,7 +144,7 @@ impl GpuDevice {
     }
 
     /// Fails if the device has reported an error.
-    pub(super) fn check(&self) -> Result<(), GpuError> {
+    pub(crate) fn check(&self) -> Result<(), GpuError> {
         let failure = self
             .failure
             .lock()
@@ -153,14 +153,14 @@ impl GpuDevice {
         failure.map_or(Ok(()), |message| Err(self.driver(message)))
     }
 
-    pub(super) fn driver(&self, message: String) -> GpuError {
+    pub(crate) fn driver(&self, message: String) -> GpuError {
         GpuError::Driver {
             adapter: self.info.name.clone(),
             message,
         }
     }
 
-    pub(super) fn too_small(&self, what: String) -> GpuError {
+    pub(crate) fn too_small(&self, what: String) -> GpuError {
         GpuError::TooSmall {
             adapter: self.info.name.clone(),
             what,

@@ -8,11 +8,11 @@ use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// Invocations of a workgroup, of every stage.
-pub(super) const WIDTH: usize = 128;
+pub(crate) const WIDTH: usize = 128;
 
 /// Direction of a transform: the sign of its exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Direction {
+pub(crate) enum Direction {
     Forward,
     Inverse,
 }
@@ -27,7 +27,7 @@ impl Direction {
 }
 
 /// The radices of a length, in the order of their stages; `None` where a prime beyond 7 divides it.
-pub(super) fn radices(length: usize) -> Option<Vec<usize>> {
+pub(crate) fn radices(length: usize) -> Option<Vec<usize>> {
     let mut rest = length;
     let mut radices = Vec::new();
     for radix in [4, 2, 3, 5, 7] {
@@ -40,7 +40,7 @@ pub(super) fn radices(length: usize) -> Option<Vec<usize>> {
 }
 
 /// exp(+-2 pi i k / length) for k = 0..length, as (re, im).
-pub(super) fn twiddles(length: usize, direction: Direction) -> Vec<[f32; 2]> {
+pub(crate) fn twiddles(length: usize, direction: Direction) -> Vec<[f32; 2]> {
     (0..length)
         .map(|k| {
             let angle = direction.sign() * TAU * k as f64 / length as f64;
@@ -51,7 +51,7 @@ pub(super) fn twiddles(length: usize, direction: Direction) -> Vec<[f32; 2]> {
 
 /// WGSL of `transform(lane)` over `lines` lines of `length` (radices as given) and of `result(index)`, which reads what
 /// it left; callers fill `ping` and pass a barrier before. Nothing is scaled. `twiddle` is the table of [`twiddles`].
-pub(super) fn source(
+pub(crate) fn source(
     length: usize,
     radices: &[usize],
     lines: usize,
