@@ -300,6 +300,34 @@ fn batches_change_no_bit() {
     assert_eq!(engine.best(&[], &mut |_| {}).unwrap(), []);
 }
 
+/// On a device with no more than every adapter has and every index in its shaders tested: the same bits. A plane of the
+/// larger grid does not fit its workgroup's memory.
+#[test]
+fn the_least_that_adapters_have_gives_the_same_bits() {
+    let Some(gpu) = adapter() else { return };
+    let least = GpuDevice::open_least(None).unwrap();
+    let ligand = cloud(40, 6.0, &RADII, 2);
+    for (size, spacing) in [(12.0, None), (30.0, Some(1.0))] {
+        let receptor = cloud(150, size, &RADII, 1);
+        let options = EngineOptions {
+            spacing,
+            ..engine_options(1e-2)
+        };
+        let pair = Pair::new(Precision::Single, &receptor, &ligand, options);
+        let turns = rotations(3, 5).into_iter().map(|rotation| LigandRotation {
+            rotation,
+            wanted: of_half_turns([true, false, true, true]),
+        });
+        let turns: Vec<LigandRotation> = turns.collect();
+        let [most, same] = [&gpu, &least].map(|gpu| {
+            let engine = GpuEngine::new(gpu, &pair.engine, 5, 2, MEMORY).unwrap();
+            let grid = engine.correlate(&some_rotation(), GridTurn::NONE).unwrap();
+            (grid, engine.best(&turns, &mut |_| {}).unwrap())
+        });
+        assert_eq!(most, same, "{:?}", pair.engine.plan().size());
+    }
+}
+
 #[test]
 fn what_cannot_be_had_is_said() {
     let Some(gpu) = adapter() else { return };

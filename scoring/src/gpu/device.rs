@@ -59,6 +59,8 @@ pub struct GpuDevice {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
     info: wgpu::AdapterInfo,
+    /// Whether shaders test each index.
+    is_checked: bool,
     /// The first error that no call returned.
     failure: Arc<Mutex<Option<String>>>,
 }
@@ -71,6 +73,19 @@ impl GpuDevice {
     /// # Errors
     /// [`GpuError`] where none is there or it cannot be opened.
     pub fn open(wanted: Option<&str>) -> Result<Self, GpuError> {
+        Self::open_as(wanted, false)
+    }
+
+    /// As [`Self::open`], with no more than every adapter has: buffers of 128 MiB, 16 KiB of workgroup memory, no
+    /// feature; and every index in a shader is tested. For checks.
+    ///
+    /// # Errors
+    /// [`GpuError`] where none is there or it cannot be opened.
+    pub fn open_least(wanted: Option<&str>) -> Result<Self, GpuError> {
+        Self::open_as(wanted, true)
+    }
+
+    fn open_as(wanted: Option<&str>, least: bool) -> Result<Self, GpuError> {
         let instance =
             wgpu::Instance::new(wgpu::InstanceDescriptor::new_without_display_handle_from_env());
         let backends = wgpu::Backends::PRIMARY;
@@ -89,7 +104,11 @@ impl GpuDevice {
         let info = adapter.get_info();
         let request = adapter.request_device(&wgpu::DeviceDescriptor {
             label: Some("knotdock"),
-            required_limits: adapter.limits(),
+            required_limits: if least {
+                wgpu::Limits::default()
+            } else {
+                adapter.limits()
+            },
             ..Default::default()
         });
         let (device, queue) = pollster::block_on(request).map_err(|error| GpuError::Driver {
@@ -111,8 +130,26 @@ impl GpuDevice {
             device,
             queue,
             info,
+            is_checked: least,
             failure,
         })
+    }
+
+    /// Compiles a shader. Sizes in it must be those of its buffers.
+    pub(crate) fn shader(&self, name: &str, source: String) -> wgpu::ShaderModule {
+        let descriptor = wgpu::ShaderModuleDescriptor {
+            label: Some(name),
+            source: wgpu::ShaderSource::Wgsl(source.into()),
+        };
+        if self.is_checked {
+            return self.device.create_shader_module(descriptor);
+        }
+        // SAFETY: shaders here index by the sizes that they are compiled for, which made their buffers; their loops end by
+        // the same sizes; and they divide by constants. Tests run all of them with the checks on, to the same bits.
+        unsafe {
+            self.device
+                .create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
+        }
     }
 
     /// The adapter's name.

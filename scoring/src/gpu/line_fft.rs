@@ -1,14 +1,21 @@
 //! The complex FFT of a few lines at once in a workgroup's memory, written out as WGSL for one length.
 //!
-//! Stockham's self-sorting form with radices 4, 2, 3, 5 and 7: every stage reads one array and writes the other, so
-//! that no pass reorders. Source: Govindaraju et al., *High performance discrete Fourier transforms on graphics
-//! processors*, SC 2008, section 3.
+//! Stockham's self-sorting form: every pass reads one array and writes the other, so that none reorders. A pass takes
+//! a radix up to 16, in registers, so that most lengths to 256 take two passes. Lines stand apart by an odd number of
+//! places, and a place is left free after every sixteen points: so the strides of passes meet different banks of the
+//! memory. Source: Govindaraju et al., *High performance discrete Fourier
+//! transforms on graphics processors*, SC 2008, section 3.
 
 use std::f64::consts::TAU;
 use std::fmt::Write;
 
 /// Invocations of a workgroup, of every stage.
 pub(crate) const WIDTH: usize = 128;
+
+/// Largest radix of a pass: its values are in registers.
+const MAX_RADIX: usize = 16;
+/// Points after which a place of a workgroup's memory is free: banks of 8 bytes.
+const BANKS: usize = 16;
 
 /// Direction of a transform: the sign of its exponent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -26,131 +33,303 @@ impl Direction {
     }
 }
 
-/// The radices of a length, in the order of their stages; `None` where a prime beyond 7 divides it.
-pub(crate) fn radices(length: usize) -> Option<Vec<usize>> {
-    let mut rest = length;
-    let mut radices = Vec::new();
-    for radix in [4, 2, 3, 5, 7] {
-        while rest.is_multiple_of(radix) {
-            radices.push(radix);
-            rest /= radix;
-        }
+/// Transforms of one length and direction, a number of lines at a time.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct LineFft {
+    pub length: usize,
+    pub lines: usize,
+    pub direction: Direction,
+}
+
+impl LineFft {
+    /// Places in the workgroup's memory from one line to the next.
+    fn stride(self) -> usize {
+        (self.length + self.length / BANKS) | 1
     }
-    (rest == 1).then_some(radices)
-}
 
-/// exp(+-2 pi i k / length) for k = 0..length, as (re, im).
-pub(crate) fn twiddles(length: usize, direction: Direction) -> Vec<[f32; 2]> {
-    (0..length)
-        .map(|k| {
-            let angle = direction.sign() * TAU * k as f64 / length as f64;
-            [angle.cos() as f32, angle.sin() as f32]
-        })
-        .collect()
-}
+    /// Places of both of the arrays that [`Self::source`] needs.
+    pub fn places(self) -> usize {
+        self.lines * self.stride()
+    }
 
-/// WGSL of `transform(lane)` over `lines` lines of `length` (radices as given) and of `result(index)`, which reads what
-/// it left; callers fill `ping` and pass a barrier before. Nothing is scaled. `twiddle` is the table of [`twiddles`].
-pub(crate) fn source(
-    length: usize,
-    radices: &[usize],
-    lines: usize,
-    direction: Direction,
-) -> String {
-    let total = lines * length;
-    let mut code = format!(
-        "var<workgroup> ping: array<vec2<f32>, {total}>;\n\
-         var<workgroup> pong: array<vec2<f32>, {total}>;\n\
-         fn multiply(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {{\n\
-         return vec2<f32>(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);\n}}\n\
-         fn transform(lane: u32) {{\n"
-    );
-    let (mut from, mut to) = ("ping", "pong");
-    let mut span = 1;
-    for &radix in radices {
-        let part = length / radix;
-        let items = lines * part;
-        let _ = write!(
-            code,
-            "for (var item = lane; item < {items}u; item += {WIDTH}u) {{\n\
-             let line = (item / {part}u) * {length}u;\n\
-             let i = item % {part}u;\n\
-             let k = i % {span}u;\n\
-             let v0 = {from}[line + i];\n"
+    /// Bytes of both arrays for each line of a length.
+    pub fn bytes_of_line(length: usize) -> usize {
+        let one = Self {
+            length,
+            lines: 1,
+            direction: Direction::Forward,
+        };
+        2 * size_of::<[f32; 2]>() * one.places()
+    }
+
+    /// Floating-point operations of a line, by the usual count of 5 n log2 n.
+    pub fn flops_of_line(length: usize) -> f64 {
+        let length = length as f64;
+        5.0 * length * length.log2()
+    }
+
+    /// exp(+-2 pi i k / length) for k = 0..length, as (re, im); none if one pass does all, so that [`Self::source`] reads
+    /// no table.
+    pub fn twiddles(self) -> Vec<[f32; 2]> {
+        let count = match radices(self.length) {
+            Some(passes) if passes.len() > 1 => self.length,
+            _ => 0,
+        };
+        (0..count)
+            .map(|k| {
+                let angle = self.direction.sign() * TAU * k as f64 / self.length as f64;
+                [angle.cos() as f32, angle.sin() as f32]
+            })
+            .collect()
+    }
+
+    /// The arrays `ping` and `pong` for the largest of some transforms.
+    pub fn arrays(transforms: &[Self]) -> String {
+        let places = transforms.iter().map(|one| one.places()).max();
+        let places = places.unwrap_or(1);
+        format!(
+            "var<workgroup> ping: array<vec2<f32>, {places}>;\n\
+             var<workgroup> pong: array<vec2<f32>, {places}>;\n\
+             fn multiply(a: vec2<f32>, b: vec2<f32>) -> vec2<f32> {{\n\
+             return vec2<f32>(a.x * b.x - a.y * b.y, a.x * b.y + a.y * b.x);\n}}\n"
+        )
+    }
+
+    /// WGSL of `transform(lane)`, of `at(line, k)`, the place of a point in `ping`, which callers fill and pass a barrier
+    /// before, and of `result(line, k)`, which reads what the transform left. Nothing is scaled. `twiddle` is the table
+    /// of [`Self::twiddles`]. All four names carry the suffix.
+    ///
+    /// `None` if a prime beyond 7 divides the length.
+    pub fn source(self, suffix: &str) -> Option<String> {
+        let Self { length, lines, .. } = self;
+        let stride = self.stride();
+        let mut code = format!(
+            "fn at{suffix}(line: u32, k: u32) -> u32 {{ return line * {stride}u + k + k / {BANKS}u; }}\n\
+             fn transform{suffix}(lane: u32) {{\n"
         );
-        let step = length / (span * radix);
-        for s in 1..radix {
-            let value = format!("{from}[line + i + {}u]", s * part);
-            let _ = if span == 1 {
-                writeln!(code, "let v{s} = {value};")
-            } else {
-                let turn = s * step;
-                writeln!(code, "let v{s} = multiply({value}, twiddle[k * {turn}u]);")
-            };
-        }
-        let next = span * radix;
-        let _ = writeln!(code, "let to = line + (i / {span}u) * {next}u + k;");
-        let values = butterfly(&mut code, radix, direction);
-        for (t, value) in values.into_iter().enumerate() {
-            let _ = writeln!(code, "{to}[to + {}u] = {value};", t * span);
-        }
-        code.push_str("}\nworkgroupBarrier();\n");
-        span *= radix;
-        std::mem::swap(&mut from, &mut to);
-    }
-    let _ = write!(
-        code,
-        "}}\nfn result(index: u32) -> vec2<f32> {{ return {from}[index]; }}\n"
-    );
-    code
-}
-
-/// The transform of v0 to v(radix - 1): intermediate values go into `code`, the results are returned as expressions.
-fn butterfly(code: &mut String, radix: usize, direction: Direction) -> Vec<String> {
-    // Times +-i.
-    let turned = |value: &str| match direction {
-        Direction::Forward => format!("vec2<f32>({value}.y, -{value}.x)"),
-        Direction::Inverse => format!("vec2<f32>(-{value}.y, {value}.x)"),
-    };
-    match radix {
-        2 => vec!["v0 + v1".into(), "v0 - v1".into()],
-        4 => {
-            code.push_str(
-                "let a = v0 + v2;\nlet b = v0 - v2;\nlet c = v1 + v3;\nlet e = v1 - v3;\n",
+        let (mut from, mut to) = ("ping", "pong");
+        let mut span = 1;
+        for radix in radices(length)? {
+            let part = length / radix;
+            let items = lines * part;
+            let _ = write!(
+                code,
+                "for (var item = lane; item < {items}u; item += {WIDTH}u) {{\n\
+                 let line = item / {part}u;\n\
+                 let i = item % {part}u;\n\
+                 let k = i % {span}u;\n"
             );
-            let _ = writeln!(code, "let d = {};", turned("e"));
-            ["a + c", "b + d", "a - c", "b - d"]
-                .map(String::from)
-                .into()
-        }
-        _ => {
-            // An odd length: outputs t and radix - t share their sums.
-            let half = radix / 2;
-            for s in 1..=half {
-                let other = radix - s;
+            for s in 0..radix {
                 let _ = writeln!(
                     code,
-                    "let p{s} = v{s} + v{other};\nlet m{s} = v{s} - v{other};"
+                    "var v{s} = {from}[at{suffix}(line, i + {}u)];",
+                    s * part
                 );
             }
-            let mut results = vec![String::new(); radix];
-            let all: Vec<String> = (1..=half).map(|s| format!("p{s}")).collect();
-            results[0] = format!("v0 + {}", all.join(" + "));
-            for t in 1..=half {
-                let angle = |s: usize| TAU * (s * t % radix) as f64 / radix as f64;
-                let sum = |name: char, part: fn(f64) -> f64| {
-                    (1..=half)
-                        .map(|s| format!("{name}{s} * f32({:.9e})", part(angle(s))))
-                        .collect::<Vec<_>>()
-                        .join(" + ")
-                };
-                let _ = writeln!(code, "let e{t} = v0 + {};", sum('p', f64::cos));
-                let _ = writeln!(code, "let o{t} = {};", sum('m', f64::sin));
-                let _ = writeln!(code, "let w{t} = {};", turned(&format!("o{t}")));
-                results[t] = format!("e{t} + w{t}");
-                results[radix - t] = format!("e{t} - w{t}");
+            if span > 1 {
+                // One read of the table; the other powers are products of lower ones, in registers.
+                let step = length / (span * radix);
+                let _ = writeln!(code, "let w1 = twiddle{suffix}[k * {step}u];");
+                for s in 1..radix {
+                    if s > 1 {
+                        let _ = writeln!(code, "let w{s} = multiply(w{}, w{});", s / 2, s - s / 2);
+                    }
+                    let _ = writeln!(code, "v{s} = multiply(v{s}, w{s});");
+                }
             }
-            results
+            let values = (0..radix).map(|s| format!("v{s}")).collect();
+            let mut registers = Registers {
+                code: &mut code,
+                count: 0,
+                direction: self.direction,
+            };
+            let values = registers.transform(values);
+            let _ = writeln!(code, "let to = (i / {span}u) * {}u + k;", span * radix);
+            for (t, value) in values.into_iter().enumerate() {
+                let _ = writeln!(
+                    code,
+                    "{to}[at{suffix}(line, to + {}u)] = {value};",
+                    t * span
+                );
+            }
+            code.push_str("}\nworkgroupBarrier();\n");
+            span *= radix;
+            std::mem::swap(&mut from, &mut to);
         }
+        let _ = write!(
+            code,
+            "}}\nfn result{suffix}(line: u32, k: u32) -> vec2<f32> {{ return {from}[at{suffix}(line, k)]; }}\n"
+        );
+        Some(code)
+    }
+}
+
+/// The radices of a length, in the order of their passes: the fewest, then those of the smallest sum. `None` if a prime
+/// beyond 7 divides it.
+fn radices(length: usize) -> Option<Vec<usize>> {
+    if length == 1 {
+        return Some(Vec::new());
+    }
+    let smooth = |radix: &usize| [2, 3, 5, 7].iter().fold(*radix, |r, p| divided(r, *p)) == 1;
+    (2..=MAX_RADIX.min(length))
+        .filter(|radix| length.is_multiple_of(*radix))
+        .filter(smooth)
+        .filter_map(|radix| {
+            let mut rest = radices(length / radix)?;
+            rest.push(radix);
+            Some(rest)
+        })
+        .min_by_key(|passes| (passes.len(), passes.iter().sum::<usize>()))
+}
+
+/// A number without a factor.
+fn divided(mut number: usize, by: usize) -> usize {
+    while number.is_multiple_of(by) {
+        number /= by;
+    }
+    number
+}
+
+/// Code of a transform in registers.
+struct Registers<'a> {
+    code: &'a mut String,
+    /// Names given.
+    count: usize,
+    direction: Direction,
+}
+
+impl Registers<'_> {
+    /// A name for a value.
+    fn named(&mut self, value: &str) -> String {
+        self.count += 1;
+        let name = format!("r{}", self.count);
+        let _ = writeln!(self.code, "let {name} = {value};");
+        name
+    }
+
+    /// Times i, or -i forward.
+    fn turned(&mut self, value: &str) -> String {
+        let turned = match self.direction {
+            Direction::Forward => format!("vec2<f32>({value}.y, -{value}.x)"),
+            Direction::Inverse => format!("vec2<f32>(-{value}.y, {value}.x)"),
+        };
+        self.named(&turned)
+    }
+
+    /// The transform of some values, by name.
+    fn transform(&mut self, v: Vec<String>) -> Vec<String> {
+        let radix = v.len();
+        match [4, 2, 3, 5, 7].iter().find(|p| radix.is_multiple_of(**p)) {
+            Some(&inner) if inner != radix => self.composite(v, inner),
+            _ => match radix {
+                1 => v,
+                2 => self.pair(&v[0], &v[1]).into(),
+                4 => self.four(&v),
+                _ => self.odd(&v),
+            },
+        }
+    }
+
+    fn pair(&mut self, a: &str, b: &str) -> [String; 2] {
+        [
+            self.named(&format!("{a} + {b}")),
+            self.named(&format!("{a} - {b}")),
+        ]
+    }
+
+    fn four(&mut self, v: &[String]) -> Vec<String> {
+        let [a, b] = self.pair(&v[0], &v[2]);
+        let [c, e] = self.pair(&v[1], &v[3]);
+        let d = self.turned(&e);
+        let [zero, two] = self.pair(&a, &c);
+        let [one, three] = self.pair(&b, &d);
+        vec![zero, one, two, three]
+    }
+
+    /// Cooley and Tukey's division into transforms of `inner`, constant turns, and the rest.
+    fn composite(&mut self, v: Vec<String>, inner: usize) -> Vec<String> {
+        let radix = v.len();
+        let outer = radix / inner;
+        let mut columns = Vec::new();
+        for n in 0..outer {
+            let line = (0..inner).map(|i| v[outer * i + n].clone()).collect();
+            let values = self.transform(line);
+            let turned = values.into_iter().enumerate();
+            let turned: Vec<String> = turned
+                .map(|(k, value)| self.turned_by(value, n * k, radix))
+                .collect();
+            columns.push(turned);
+        }
+        let mut results = vec![String::new(); radix];
+        for k in 0..inner {
+            let line = columns.iter().map(|column| column[k].clone()).collect();
+            for (m, value) in self.transform(line).into_iter().enumerate() {
+                results[k + inner * m] = value;
+            }
+        }
+        results
+    }
+
+    /// Times exp(+-2 pi i turn / of).
+    fn turned_by(&mut self, value: String, turn: usize, of: usize) -> String {
+        match 4 * (turn % of) {
+            0 => value,
+            quarter if quarter == of => self.turned(&value),
+            _ => {
+                let angle = self.direction.sign() * TAU * turn as f64 / of as f64;
+                let factor = format!("vec2<f32>({:.9e}, {:.9e})", angle.cos(), angle.sin());
+                self.named(&format!("multiply({value}, {factor})"))
+            }
+        }
+    }
+
+    /// An odd length: outputs t and radix - t share their sums.
+    fn odd(&mut self, v: &[String]) -> Vec<String> {
+        let radix = v.len();
+        let half = radix / 2;
+        let pairs: Vec<[String; 2]> = (1..=half)
+            .map(|s| self.pair(&v[s], &v[radix - s]))
+            .collect();
+        let mut results = vec![String::new(); radix];
+        let sums: Vec<&str> = pairs.iter().map(|[sum, _]| sum.as_str()).collect();
+        results[0] = self.named(&format!("{} + {}", v[0], sums.join(" + ")));
+        for t in 1..=half {
+            let sum = |which: usize, part: fn(f64) -> f64| {
+                let of = |s: usize| part(TAU * ((s + 1) * t % radix) as f64 / radix as f64);
+                let terms = pairs.iter().enumerate();
+                let terms = terms.map(|(s, pair)| format!("{} * f32({:.9e})", pair[which], of(s)));
+                terms.collect::<Vec<_>>().join(" + ")
+            };
+            let even = self.named(&format!("{} + {}", v[0], sum(0, f64::cos)));
+            let odd = self.named(&sum(1, f64::sin));
+            let odd = self.turned(&odd);
+            [results[t], results[radix - t]] = self.pair(&even, &odd);
+        }
+        results
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every length that grids have takes the fewest passes of radices to 16: two up to 256.
+    #[test]
+    fn lengths_up_to_256_take_two_passes() {
+        for length in 17..=256 {
+            let smooth = [2, 3, 5, 7].into_iter().fold(length, divided) == 1;
+            let passes = radices(length);
+            assert_eq!(passes.is_some(), smooth, "{length}");
+            let Some(passes) = passes else { continue };
+            assert_eq!(passes.iter().product::<usize>(), length);
+            let twos = (2..=MAX_RADIX).any(|a| length.is_multiple_of(a) && length / a <= MAX_RADIX);
+            assert_eq!(
+                passes.len(),
+                if twos { 2 } else { 3 },
+                "{length}: {passes:?}"
+            );
+        }
+        assert_eq!(radices(48), Some(vec![8, 6]));
+        assert_eq!(radices(11), None);
     }
 }

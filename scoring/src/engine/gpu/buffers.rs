@@ -2,6 +2,7 @@
 
 use crate::engine::columns::Reading;
 use crate::engine::cpu::Transforms;
+use crate::gpu::line_fft::{LineFft, WIDTH};
 use crate::gpu::{GpuDevice, GpuError};
 use crate::transform::Real;
 use crate::transform::modes::place;
@@ -30,6 +31,8 @@ pub(super) struct Sizes {
     /// Peaks of an image, and how far each rules out others on each axis, voxels.
     pub peaks: usize,
     pub reach: [usize; 3],
+    /// Whether the plane between the inverses along y and z fits a workgroup's memory.
+    pub tile_fits: bool,
 }
 
 /// Turns and images of a batch.
@@ -47,11 +50,16 @@ const MAX_TURNS: usize = 32;
 
 impl Sizes {
     /// Of an engine, with `peaks` peaks per image, each of which keeps `reach` voxels free on each side.
-    pub fn new<T: Real>(engine: &Transforms<T>, peaks: usize, reach: usize) -> Self {
+    pub fn new<T: Real>(
+        gpu: &GpuDevice,
+        engine: &Transforms<T>,
+        peaks: usize,
+        reach: usize,
+    ) -> Self {
         let plan = &engine.plan;
         let modes = plan.modes();
         let kernel = engine.forward.kernel();
-        Self {
+        let mut sizes = Self {
             grid: modes.size,
             fine: plan.fine(),
             block: engine.forward.block(),
@@ -69,7 +77,17 @@ impl Sizes {
                 .unwrap_or(0),
             peaks,
             reach: modes.size.map(|n| reach.min((n - 1) / 2)),
-        }
+            tile_fits: false,
+        };
+        let [_, ny, nz] = sizes.grid;
+        let bytes = LineFft::bytes_of_line(ny.max(nz)) + 8 * sizes.tile() + REAL * WIDTH;
+        sizes.tile_fits = bytes <= gpu.device.limits().max_compute_workgroup_storage_size as usize;
+        sizes
+    }
+
+    /// Modes (kz, y) of a plane x, between the inverses along y and z.
+    pub fn tile(&self) -> usize {
+        self.depth * self.grid[1]
     }
 
     /// Peaks that an image of finite scores has at the least: each rules out no more voxels than its neighbourhood has.
@@ -80,7 +98,8 @@ impl Sizes {
     }
 
     /// Bytes per turn: the block, its rows along z, its columns before the transform along x, the ligand's modes. Bytes
-    /// per image: the product's columns, its planes, the scores, the best of each row, the peaks.
+    /// per image: the product's columns, its planes if they do not fit a workgroup's memory, the scores, the best of each
+    /// row, the peaks.
     fn bytes(&self) -> ([usize; 4], [usize; 5]) {
         const COMPLEX: usize = 2 * REAL;
         let ([nx, ny, nz], [bx, by, bz]) = (self.grid, self.block);
@@ -92,7 +111,11 @@ impl Sizes {
         ];
         let of_image = [
             COMPLEX * self.columns * nx,
-            COMPLEX * nx * self.depth * ny,
+            if self.tile_fits {
+                0
+            } else {
+                COMPLEX * nx * self.tile()
+            },
             REAL * nx * ny * nz,
             REAL * nx * ny,
             8 * self.peaks,
@@ -144,6 +167,7 @@ struct Column {
     y: u32,
     side: u32,
     start: u32,
+    plane: u32,
 }
 
 /// Everything on the card.
@@ -162,7 +186,7 @@ pub(super) struct Buffers {
     pub partial: wgpu::Buffer,
     pub turned: wgpu::Buffer,
     pub along: wgpu::Buffer,
-    pub rows: wgpu::Buffer,
+    pub tiles: wgpu::Buffer,
     pub grid: wgpu::Buffer,
     pub row_best: wgpu::Buffer,
     pub peaks: wgpu::Buffer,
@@ -219,7 +243,7 @@ impl Buffers {
         let empty = |label, bytes: usize| {
             gpu.device.create_buffer(&wgpu::BufferDescriptor {
                 label: Some(label),
-                size: bytes as u64,
+                size: bytes.max(REAL) as u64,
                 usage: wgpu::BufferUsages::STORAGE
                     | wgpu::BufferUsages::COPY_SRC
                     | wgpu::BufferUsages::COPY_DST,
@@ -243,7 +267,7 @@ impl Buffers {
             partial: empty("partial", turns * of_turn[2]),
             turned: empty("turned", turns * of_turn[3]),
             along: empty("along", images * of_image[0]),
-            rows: empty("rows", images * of_image[1]),
+            tiles: empty("tiles", images * of_image[1]),
             grid: empty("grid", images * of_image[2]),
             row_best: empty("row best", images * of_image[3]),
             peaks: empty("peaks", images * of_image[4]),
@@ -264,6 +288,7 @@ fn columns<T: Real>(engine: &Transforms<T>, sizes: &Sizes) -> Vec<Column> {
             y: place(column.ky, sizes.grid[1]) as u32,
             side: column.kx_max as u32,
             start: column.start as u32,
+            plane: column.kz as u32,
         })
         .collect()
 }

@@ -22,7 +22,7 @@ fn main(
         if (column < COLUMNS && x < BX) {
             value = partial[(group.y * COLUMNS + column) * BX + x];
         }
-        ping[item] = value;
+        ping[at(item / MX, x)] = value;
     }
     workgroupBarrier();
     transform(lane);
@@ -38,7 +38,7 @@ fn main(
             // kx = mode - side, in transform order.
             let place = (mode + MX - column.side) % MX;
             turned[FIELDS * (turn * MODES + column.start) + field * length + mode] =
-                result(line * MX + place);
+                result(line, place);
         }
     }
 }

@@ -23,7 +23,7 @@ fn main(
         if (x < BX && y < BY) {
             value = rows[((group.z * BX + x) * DEPTH + kz) * BY + y];
         }
-        ping[item] = value;
+        ping[at(item / MY, y)] = value;
     }
     workgroupBarrier();
     transform(lane);
@@ -34,7 +34,7 @@ fn main(
         let line = item % LINES;
         if (first + line < BX) {
             partial[(group.z * COLUMNS + column) * BX + first + line] =
-                result(line * MY + columns[column].fine_y);
+                result(line, columns[column].fine_y);
         }
     }
 }

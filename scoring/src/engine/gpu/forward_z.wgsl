@@ -21,7 +21,7 @@ fn main(
             let at = (plane * BY + 2u * pair) * BZ + z;
             value = vec2<f32>(f32(block[at]), f32(block[at + BZ]));
         }
-        ping[item] = value;
+        ping[at(item / MZ, z)] = value;
     }
     workgroupBarrier();
     transform(lane);
@@ -31,8 +31,8 @@ fn main(
         let pair = first + line;
         if (2u * pair < BY) {
             // X = A + iB with A, B Hermitian.
-            let value = result(line * MZ + kz);
-            let mirror = result(line * MZ + (MZ - kz) % MZ);
+            let value = result(line, kz);
+            let mirror = result(line, (MZ - kz) % MZ);
             let at = (plane * DEPTH + kz) * BY + 2u * pair;
             rows[at] = 0.5 * vec2<f32>(value.x + mirror.x, value.y - mirror.y);
             rows[at + 1u] = 0.5 * vec2<f32>(value.y + mirror.y, mirror.x - value.x);

@@ -3,7 +3,8 @@
 //!
 //! All runs through wgpu (Vulkan, Metal, Direct3D 12), in single precision. A batch of turned ligands goes through the
 //! stages of the engine on the CPU, one dispatch each. They are: spreading, the three pruned forward transforms, the
-//! product with the inverse along x (four or eight images from one transform), the inverses along y and z, and the peaks.
+//! product with the inverse along x (four or eight images from one transform), the inverses along y and z plane by plane,
+//! and the peaks.
 //! Only the peaks come back. Knots are spread in whole numbers, whose sum does not depend on the order of the
 //! additions: one card gives the same bits each time.
 
@@ -57,6 +58,19 @@ pub struct GridPeak {
     pub score: f32,
 }
 
+/// What a stage takes and does for one image. A turn's transforms are shared by its images.
+#[derive(Clone, Copy, Debug)]
+pub struct StageCost {
+    /// What it does.
+    pub name: &'static str,
+    /// Time.
+    pub seconds: f64,
+    /// Bytes that pass between it and the card's memory, each value read once and written once.
+    pub bytes: f64,
+    /// Floating-point operations; a transform of n points counts 5 n log2 n.
+    pub flops: f64,
+}
+
 /// An image of a batch: which turn of all, and which turn of the grid.
 #[derive(Clone, Copy)]
 struct Image {
@@ -92,7 +106,7 @@ impl GpuEngine {
         reach: usize,
         memory: u64,
     ) -> Result<Self, GpuError> {
-        let sizes = Sizes::new(engine, peaks.max(1), reach);
+        let sizes = Sizes::new(gpu, engine, peaks.max(1), reach);
         let batch = sizes.batch(gpu, memory)?;
         let buffers = Buffers::new(gpu, engine, &sizes, batch)?;
         let stages = Stages::new(gpu, &sizes, &buffers)?;
@@ -210,17 +224,14 @@ impl GpuEngine {
         self.read(&results)
     }
 
-    /// Seconds of each stage by name, of a full batch, divided by its images.
+    /// What each stage takes and does, of a full batch, divided by its images.
     ///
-    /// Each is the least of a few measurements. Stages are submitted and awaited one by one, so that together they take
-    /// longer than a whole batch.
+    /// Each time is the least of a few measurements. Stages are submitted and awaited one by one, so that together they
+    /// take longer than a whole batch.
     ///
     /// # Errors
     /// [`GpuError::Driver`] where the driver fails.
-    pub fn stage_seconds(
-        &self,
-        rotation: &UnitQuaternion<f64>,
-    ) -> Result<Vec<(&'static str, f64)>, GpuError> {
+    pub fn stages(&self, rotation: &UnitQuaternion<f64>) -> Result<Vec<StageCost>, GpuError> {
         const REPEATS: usize = 5;
         let turn = LigandRotation {
             rotation: *rotation,
@@ -234,7 +245,7 @@ impl GpuEngine {
             .collect();
         let turns = vec![turn; self.batch.turns];
         let counts = (self.batch.turns, images.len());
-        let mut seconds = Vec::new();
+        let mut costs = Vec::new();
         for stage in 0..self.stages.len() {
             let mut least = f64::INFINITY;
             for _ in 0..REPEATS {
@@ -251,9 +262,15 @@ impl GpuEngine {
                 self.gpu.wait(self.gpu.queue.submit([encoder.finish()]))?;
                 least = least.min(start.elapsed().as_secs_f64());
             }
-            seconds.push((self.stages.name(stage), least / images.len() as f64));
+            let (name, work) = self.stages.of(stage);
+            costs.push(StageCost {
+                name,
+                seconds: least / images.len() as f64,
+                bytes: work.bytes,
+                flops: work.flops,
+            });
         }
-        Ok(seconds)
+        Ok(costs)
     }
 
     /// Runs of images that fit a batch, no turn's divided among two but where one alone is too many.

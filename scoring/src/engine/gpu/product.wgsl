@@ -8,7 +8,7 @@
 @group(0) @binding(3) var<storage, read> turned: array<vec2<f32>>;
 // Per image the turn of the batch, and which turn of the grid it is.
 @group(0) @binding(4) var<storage, read> images: array<vec2<u32>>;
-// [image][column][x]
+// [image][x][column]
 @group(0) @binding(5) var<storage, read_write> along: array<vec2<f32>>;
 // [turn of the grid][column]: the first mode of the column that is read, and how: 1 reversed, 2 conjugated.
 @group(0) @binding(6) var<storage, read> readings: array<vec2<u32>>;
@@ -21,7 +21,7 @@ fn main(
     let first = group.x * LINES;
     let image = images[group.y];
     for (var item = lane; item < LINES * NX; item += WIDTH) {
-        ping[item] = vec2<f32>(0.0);
+        ping[at(item / NX, item % NX)] = vec2<f32>(0.0);
     }
     workgroupBarrier();
     for (var item = lane; item < LINES * LONGEST; item += WIDTH) {
@@ -47,13 +47,15 @@ fn main(
             let b = turned[theirs + field * length];
             sum += multiply(a, vec2<f32>(b.x, sign * b.y));
         }
-        ping[line * NX + (mode + NX - column.side) % NX] = sum;
+        ping[at(line, (mode + NX - column.side) % NX)] = sum;
     }
     workgroupBarrier();
     transform(lane);
     for (var item = lane; item < LINES * NX; item += WIDTH) {
-        if (first + item / NX < COLUMNS) {
-            along[(group.y * COLUMNS + first) * NX + item] = result(item);
+        let x = item / LINES;
+        let line = item % LINES;
+        if (first + line < COLUMNS) {
+            along[(group.y * NX + x) * COLUMNS + first + line] = result(line, x);
         }
     }
 }

@@ -1,7 +1,7 @@
 //! The stages of a batch: what each computes, on which buffers, in how many workgroups.
 
 use super::buffers::{Buffers, Sizes};
-use crate::gpu::line_fft::{self, Direction, WIDTH, radices, twiddles};
+use crate::gpu::line_fft::{Direction, LineFft, WIDTH};
 use crate::gpu::{GpuDevice, GpuError};
 use std::ops::Range;
 use wgpu::util::DeviceExt;
@@ -11,6 +11,14 @@ const MAX_GROUPS: usize = 65_535;
 /// Most lines that a workgroup transforms together: beyond, a row of them is longer than a memory transaction.
 const MAX_LINES: usize = 16;
 
+/// What a stage does per turn or per image: bytes that pass between it and the card's memory, each value read and written
+/// once, and floating-point operations.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Work {
+    pub bytes: f64,
+    pub flops: f64,
+}
+
 /// A compiled stage with its buffers.
 struct Stage {
     name: &'static str,
@@ -18,10 +26,19 @@ struct Stage {
     bindings: wgpu::BindGroup,
     /// Workgroups for a number of turns and images.
     groups: fn(&Sizes, &Lines, usize, usize) -> [usize; 3],
+    /// Of each image, a turn's share counted.
+    work: Work,
 }
 
-/// Lines that a workgroup of each transform takes: forward z, y, x, then inverse x, y, z.
-type Lines = [usize; 6];
+/// Lines that a workgroup of each transform takes.
+#[derive(Clone, Copy, Debug)]
+struct Lines {
+    forward_z: usize,
+    forward_y: usize,
+    forward_x: usize,
+    inverse_x: usize,
+    inverse_yz: usize,
+}
 
 /// All stages, in order.
 pub(super) struct Stages {
@@ -32,26 +49,29 @@ pub(super) struct Stages {
 /// The parts of a stage.
 struct Recipe<'a> {
     name: &'static str,
-    code: &'static str,
-    /// Which of the transforms, and which way; `None`: none.
-    transform: Option<(usize, usize, Direction)>,
+    code: String,
+    /// Transforms, each with the suffix of its names.
+    transforms: Vec<(&'static str, LineFft)>,
     buffers: Vec<&'a wgpu::Buffer>,
     groups: fn(&Sizes, &Lines, usize, usize) -> [usize; 3],
+    work: Work,
 }
 
 impl Stages {
     /// Compiles the stages for a plan's sizes.
     pub fn new(gpu: &GpuDevice, sizes: &Sizes, buffers: &Buffers) -> Result<Self, GpuError> {
-        let lines = lines(gpu, sizes)?;
-        let recipes = [
-            forward_recipes(sizes, buffers),
-            inverse_recipes(sizes, buffers),
-        ];
+        let lines = Lines::new(gpu, sizes)?;
         let header = header(sizes);
-        let stages = recipes
-            .iter()
-            .flatten()
-            .map(|recipe| recipe.compile(gpu, &header, &lines))
+        let forward = forward_recipes(sizes, &lines, buffers);
+        let inverse = inverse_recipes(sizes, &lines, buffers);
+        let of_turn = forward.into_iter().map(|mut recipe| {
+            recipe.work.bytes /= sizes.images as f64;
+            recipe.work.flops /= sizes.images as f64;
+            recipe
+        });
+        let stages = of_turn
+            .chain(inverse)
+            .map(|recipe| recipe.compile(gpu, &header))
             .collect::<Result<_, _>>()?;
         gpu.check()?;
         Ok(Self { stages, lines })
@@ -62,9 +82,9 @@ impl Stages {
         self.stages.len()
     }
 
-    /// Name of a stage.
-    pub fn name(&self, stage: usize) -> &'static str {
-        self.stages[stage].name
+    /// Name of a stage, and what it does for an image.
+    pub fn of(&self, stage: usize) -> (&'static str, Work) {
+        (self.stages[stage].name, self.stages[stage].work)
     }
 
     /// Records a range of stages for a number of turns and images.
@@ -86,35 +106,32 @@ impl Stages {
 }
 
 impl Recipe<'_> {
-    fn compile(&self, gpu: &GpuDevice, header: &str, lines: &Lines) -> Result<Stage, GpuError> {
+    fn compile(&self, gpu: &GpuDevice, header: &str) -> Result<Stage, GpuError> {
         let mut source = String::from(header);
-        let mut table = None;
-        if let Some((which, length, direction)) = self.transform {
-            let lines = lines[which];
-            let radices = radices(length).ok_or_else(|| {
+        let mut tables = Vec::new();
+        let transforms: Vec<LineFft> = self.transforms.iter().map(|(_, one)| *one).collect();
+        source += &LineFft::arrays(&transforms);
+        for (suffix, transform) in &self.transforms {
+            let code = transform.source(suffix).ok_or_else(|| {
                 gpu.too_small(format!(
-                    "no transform of {length} points, which a prime above 7 divides"
+                    "no transform of {} points, which a prime above 7 divides",
+                    transform.length
                 ))
             })?;
-            source += &format!("const LINES: u32 = {lines}u;\n");
-            source += &line_fft::source(length, &radices, lines, direction);
-            let twiddles = twiddles(length, direction);
-            table = Some(
+            let of = suffix.to_uppercase();
+            source += &format!("const LINES{of}: u32 = {}u;\n{code}", transform.lines);
+            let table = transform.twiddles();
+            tables.push((!table.is_empty()).then(|| {
                 gpu.device
                     .create_buffer_init(&wgpu::util::BufferInitDescriptor {
                         label: Some("twiddle"),
-                        contents: bytemuck::cast_slice(&twiddles),
+                        contents: bytemuck::cast_slice(&table),
                         usage: wgpu::BufferUsages::STORAGE,
-                    }),
-            );
+                    })
+            }));
         }
-        source += self.code;
-        let module = gpu
-            .device
-            .create_shader_module(wgpu::ShaderModuleDescriptor {
-                label: Some(self.name),
-                source: wgpu::ShaderSource::Wgsl(source.into()),
-            });
+        source += &self.code;
+        let module = gpu.shader(self.name, source);
         let pipeline = gpu
             .device
             .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
@@ -130,13 +147,16 @@ impl Recipe<'_> {
                 cache: None,
             });
         gpu.check()?;
-        let entries: Vec<wgpu::BindGroupEntry> = table
-            .iter()
-            .chain(self.buffers.iter().copied())
+        // A table that a transform does not read has a number and no entry.
+        let tables = tables.iter().map(Option::as_ref);
+        let entries: Vec<wgpu::BindGroupEntry> = tables
+            .chain(self.buffers.iter().copied().map(Some))
             .enumerate()
-            .map(|(binding, buffer)| wgpu::BindGroupEntry {
-                binding: binding as u32,
-                resource: buffer.as_entire_binding(),
+            .filter_map(|(binding, buffer)| {
+                buffer.map(|buffer| wgpu::BindGroupEntry {
+                    binding: binding as u32,
+                    resource: buffer.as_entire_binding(),
+                })
             })
             .collect();
         let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
@@ -149,85 +169,141 @@ impl Recipe<'_> {
             pipeline,
             bindings,
             groups: self.groups,
+            work: self.work,
         })
     }
 }
 
-/// Lines that a workgroup of each transform takes, by its memory.
-fn lines(gpu: &GpuDevice, sizes: &Sizes) -> Result<Lines, GpuError> {
-    let [mx, my, mz] = sizes.fine;
-    let [nx, ny, nz] = sizes.grid;
-    let lengths = [mz, my, mx, nx, ny, nz];
-    let allowed = gpu.device.limits().max_compute_workgroup_storage_size as usize;
-    let mut lines: Lines = [1; 6];
-    for (lines, length) in lines.iter_mut().zip(lengths) {
-        // Two arrays of complex numbers; half of the memory, so that two workgroups share a core.
-        let most = allowed / 2 / (16 * length);
-        if 16 * length > allowed {
-            return Err(gpu.too_small(format!(
-                "a line of {length} points takes {} bytes of workgroup memory, and there are {allowed}",
-                16 * length
-            )));
-        }
-        *lines = most.clamp(1, MAX_LINES);
+impl Lines {
+    /// By a workgroup's memory.
+    fn new(gpu: &GpuDevice, sizes: &Sizes) -> Result<Self, GpuError> {
+        let [mx, my, mz] = sizes.fine;
+        let [nx, ny, nz] = sizes.grid;
+        let allowed = gpu.device.limits().max_compute_workgroup_storage_size as usize;
+        let most = |length: usize, allowed: usize| {
+            let bytes = LineFft::bytes_of_line(length);
+            match allowed / bytes {
+                0 => Err(gpu.too_small(format!(
+                    "a line of {length} points takes {bytes} bytes of workgroup memory, and there are {allowed}"
+                ))),
+                lines => Ok(lines.min(MAX_LINES)),
+            }
+        };
+        // Half of the memory if a line fits it, so that two workgroups share a core.
+        let of = |length| most(length, allowed / 2).or_else(|_| most(length, allowed));
+        let beside = 4 * WIDTH + if sizes.tile_fits { 8 * sizes.tile() } else { 0 };
+        Ok(Self {
+            forward_z: of(mz)?,
+            forward_y: of(my)?,
+            forward_x: of(mx)?,
+            inverse_x: of(nx)?,
+            inverse_yz: most(ny.max(nz), allowed - beside)?,
+        })
     }
-    Ok(lines)
 }
 
+/// The transform of lines of a length.
+fn fft(length: usize, lines: usize, direction: Direction) -> LineFft {
+    LineFft {
+        length,
+        lines,
+        direction,
+    }
+}
+
+/// Bytes of a complex number.
+const COMPLEX: f64 = 8.0;
+
 /// The stages from the ligand's knots to the modes of each turn.
-fn forward_recipes<'a>(sizes: &Sizes, b: &'a Buffers) -> [Recipe<'a>; 4] {
+fn forward_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<'a>; 4] {
+    use Direction::Forward;
     let [mx, my, mz] = sizes.fine;
+    let [bx, by, bz] = sizes.block.map(|n| n as f64);
+    let [fields, depth, columns] = [sizes.fields, sizes.depth, sizes.columns].map(|n| n as f64);
+    let spread = (sizes.knots * sizes.window.pow(3)) as f64 * fields;
+    let rows = COMPLEX * fields * bx * depth * by;
+    let partial = COMPLEX * fields * columns * bx;
+    let turned = COMPLEX * fields * sizes.modes as f64;
     [
         Recipe {
             name: "spread",
-            code: include_str!("spread.wgsl"),
-            transform: None,
+            code: include_str!("spread.wgsl").into(),
+            transforms: Vec::new(),
             buffers: vec![&b.knots, &b.weights, &b.window, &b.turns, &b.block],
             groups: |sizes, _, turns, _| {
                 let groups = (sizes.knots * sizes.window * sizes.window).div_ceil(WIDTH);
                 [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), turns]
             },
+            // The block is cleared, and each point of a window is read and written.
+            work: Work {
+                bytes: 4.0 * fields * bx * by * bz + 8.0 * spread,
+                flops: 2.0 * spread,
+            },
         },
         Recipe {
             name: "forward z",
-            code: include_str!("forward_z.wgsl"),
-            transform: Some((0, mz, Direction::Forward)),
+            code: include_str!("forward_z.wgsl").into(),
+            transforms: vec![("", fft(mz, lines.forward_z, Forward))],
             buffers: vec![&b.block, &b.fine_rows],
             groups: |sizes, lines, turns, _| {
                 let [bx, by, _] = sizes.block;
-                [(by / 2).div_ceil(lines[0]), bx, turns * sizes.fields]
+                let across = (by / 2).div_ceil(lines.forward_z);
+                [across, bx, turns * sizes.fields]
+            },
+            work: Work {
+                bytes: 4.0 * fields * bx * by * bz + rows,
+                flops: fields * bx * by / 2.0 * LineFft::flops_of_line(mz),
             },
         },
         Recipe {
             name: "forward y",
-            code: include_str!("forward_y.wgsl"),
-            transform: Some((1, my, Direction::Forward)),
+            code: include_str!("forward_y.wgsl").into(),
+            transforms: vec![("", fft(my, lines.forward_y, Forward))],
             buffers: vec![&b.columns, &b.planes, &b.fine_rows, &b.partial],
             groups: |sizes, lines, turns, _| {
-                let across = sizes.block[0].div_ceil(lines[1]);
+                let across = sizes.block[0].div_ceil(lines.forward_y);
                 [across, sizes.depth, turns * sizes.fields]
+            },
+            work: Work {
+                bytes: rows + partial,
+                flops: fields * bx * depth * LineFft::flops_of_line(my),
             },
         },
         Recipe {
             name: "forward x",
-            code: include_str!("forward_x.wgsl"),
-            transform: Some((2, mx, Direction::Forward)),
+            code: include_str!("forward_x.wgsl").into(),
+            transforms: vec![("", fft(mx, lines.forward_x, Forward))],
             buffers: vec![&b.columns, &b.partial, &b.turned],
             groups: |sizes, lines, turns, _| {
-                [sizes.columns.div_ceil(lines[2]), turns * sizes.fields, 1]
+                let across = sizes.columns.div_ceil(lines.forward_x);
+                [across, turns * sizes.fields, 1]
+            },
+            work: Work {
+                bytes: partial + turned,
+                flops: fields * columns * LineFft::flops_of_line(mx),
             },
         },
     ]
 }
 
 /// The stages from the modes of each turn to the peaks of each image.
-fn inverse_recipes<'a>(sizes: &Sizes, b: &'a Buffers) -> [Recipe<'a>; 4] {
+fn inverse_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<'a>; 3] {
+    use Direction::Inverse;
     let [nx, ny, nz] = sizes.grid;
+    let rows = (nx * ny) as f64;
+    let along = COMPLEX * (sizes.columns * nx) as f64;
+    // The ligand's modes and the receptor's.
+    let modes = 2.0 * COMPLEX * (sizes.fields * sizes.modes) as f64;
+    let tile = COMPLEX * (nx * sizes.tile()) as f64;
+    let mut of_yz = vec![&b.columns, &b.planes, &b.along, &b.grid, &b.row_best];
+    if !sizes.tile_fits {
+        of_yz.push(&b.tiles);
+    }
     [
         Recipe {
-            name: "product",
-            code: include_str!("product.wgsl"),
-            transform: Some((3, nx, Direction::Inverse)),
+            name: "product and inverse x",
+            code: include_str!("product.wgsl").into(),
+            transforms: vec![("", fft(nx, lines.inverse_x, Inverse))],
             buffers: vec![
                 &b.columns,
                 &b.spectra,
@@ -236,35 +312,61 @@ fn inverse_recipes<'a>(sizes: &Sizes, b: &'a Buffers) -> [Recipe<'a>; 4] {
                 &b.along,
                 &b.readings,
             ],
-            groups: |sizes, lines, _, images| [sizes.columns.div_ceil(lines[3]), images, 1],
-        },
-        Recipe {
-            name: "inverse y",
-            code: include_str!("inverse_y.wgsl"),
-            transform: Some((4, ny, Direction::Inverse)),
-            buffers: vec![&b.columns, &b.planes, &b.along, &b.rows],
-            groups: |sizes, lines, _, images| {
-                [sizes.grid[0].div_ceil(lines[4]), sizes.depth, images]
+            groups: |sizes, lines, _, images| [sizes.columns.div_ceil(lines.inverse_x), images, 1],
+            work: Work {
+                bytes: modes + along,
+                // A complex product and sum: eight operations.
+                flops: modes / 2.0 + sizes.columns as f64 * LineFft::flops_of_line(nx),
             },
         },
         Recipe {
-            name: "inverse z",
-            code: include_str!("inverse_z.wgsl"),
-            transform: Some((5, nz, Direction::Inverse)),
-            buffers: vec![&b.rows, &b.grid, &b.row_best],
-            groups: |sizes, lines, _, images| {
-                let [nx, ny, _] = sizes.grid;
-                [(ny / 2).div_ceil(lines[5]), nx, images]
+            name: "inverse y and z",
+            code: tile_source(sizes) + include_str!("inverse_yz.wgsl"),
+            transforms: vec![
+                ("_y", fft(ny, lines.inverse_yz, Inverse)),
+                ("_z", fft(nz, lines.inverse_yz, Inverse)),
+            ],
+            buffers: of_yz,
+            groups: |sizes, _, _, images| [sizes.grid[0], images, 1],
+            work: Work {
+                bytes: along
+                    + 4.0 * rows * nz as f64
+                    + 4.0 * rows
+                    + if sizes.tile_fits { 0.0 } else { 2.0 * tile },
+                flops: (nx * sizes.depth) as f64 * LineFft::flops_of_line(ny)
+                    + rows / 2.0 * LineFft::flops_of_line(nz),
             },
         },
         Recipe {
             name: "peaks",
-            code: include_str!("peaks.wgsl"),
-            transform: None,
+            code: include_str!("peaks.wgsl").into(),
+            transforms: Vec::new(),
             buffers: vec![&b.grid, &b.row_best, &b.peaks],
             groups: |_, _, _, images| [images, 1, 1],
+            work: Work {
+                bytes: 4.0 * sizes.peaks as f64 * rows,
+                flops: 0.0,
+            },
         },
     ]
+}
+
+/// Where the inverse along y leaves a plane for that along z: in the workgroup's memory if it fits, else in the card's.
+fn tile_source(sizes: &Sizes) -> String {
+    let count = sizes.tile();
+    if sizes.tile_fits {
+        format!(
+            "var<workgroup> tile: array<vec2<f32>, {count}>;\n\
+             const TILE: u32 = 0u;\n\
+             fn tileBarrier() {{ workgroupBarrier(); }}\n"
+        )
+    } else {
+        format!(
+            "@group(0) @binding(7) var<storage, read_write> tile: array<vec2<f32>>;\n\
+             const TILE: u32 = {count}u;\n\
+             fn tileBarrier() {{ storageBarrier(); workgroupBarrier(); }}\n"
+        )
+    }
 }
 
 /// The sizes as WGSL, and declarations of all stages.
@@ -303,6 +405,6 @@ fn header(sizes: &Sizes) -> String {
         .map(|(name, value)| format!("const {name}: u32 = {value}u;\n"))
         .collect();
     header += &format!("const LOWEST: f32 = {:e};\n", f32::MIN);
-    header += "struct Column { fine_y: u32, y: u32, side: u32, start: u32 }\n";
+    header += "struct Column { fine_y: u32, y: u32, side: u32, start: u32, plane: u32 }\n";
     header
 }
