@@ -52,7 +52,9 @@ benchmark dir *options:
     python3 scripts/benchmark/benchmark.py {{dir}} --knotdock target/release/knotdock {{options}}
 
 # A graphics processor: checked against the CPU, then timed beside it
-gpu:
-    KNOTDOCK_NEEDS_GPU=1 cargo test -p knotdock-scoring --features gpu --test all gpu
-    KNOTDOCK_NEEDS_GPU=1 cargo test -p knotdock-cli --test all graphics
-    cargo bench --bench graphics
+gpu *pairs: (gpu-pack pairs)
+    target/gpu-pack/run
+
+# What `just gpu` runs, in target/gpu-pack, for a machine without cargo; pairs as NAME=RECEPTOR,LIGAND
+gpu-pack *pairs:
+    scripts/gpu/pack.sh target/gpu-pack {{pairs}}

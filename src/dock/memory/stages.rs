@@ -4,7 +4,7 @@
 
 use crate::dock::memory::process;
 use crate::dock::scene::{LengthUnit, Scene};
-use crate::options::DockOptions;
+use crate::options::{DockOptions, EngineChoice};
 use crate::pose_space::PoseSpace;
 use crate::pose_space::refine::RefinedPose;
 use crate::pose_space::rotations::RotationGroup;
@@ -78,6 +78,8 @@ pub(super) struct Sizes {
     poses: u64,
     /// Whether poses are refined.
     is_refined: bool,
+    /// Whether a graphics processor searches.
+    is_on_card: bool,
 }
 
 /// The stage of the most bytes.
@@ -120,6 +122,7 @@ impl Sizes {
             per_rotation,
             poses: (search.poses as u64).min((rotations + finer) * per_rotation),
             is_refined: refined > 0,
+            is_on_card: search.engine == EngineChoice::Gpu,
         }
     }
 
@@ -171,7 +174,7 @@ impl Sizes {
         let groups = size_of::<RotationGroup>() as u64 * finer.div_ceil(self.images) + 8 * finer;
         let fine = self.kept_spectra()
             + rank as u64 * engine.component
-            + rotations * (self.workspace(rank) + THREAD)
+            + self.on_cores(rotations) * (self.workspace(rank) + THREAD)
             + PEAK * peaks
             + groups;
         let refined = PEAK + size_of::<RefinedPose>() as u64 + size_of::<Pose>() as u64;
@@ -199,7 +202,17 @@ impl Sizes {
         .map(|(stage, own)| (stage, self.whole(own)))
     }
 
+    /// Of a number of rotations, those in flight on the cores: where a graphics processor searches, one.
+    fn on_cores(&self, rotations: u64) -> u64 {
+        if self.is_on_card {
+            rotations.min(1)
+        } else {
+            rotations
+        }
+    }
+
     fn search(&self, rotations: u64, rank: usize) -> u64 {
+        let rotations = self.on_cores(rotations);
         let groups = size_of::<RotationGroup>() as u64 * self.groups();
         let lists = 2 * rotations * self.scanned() * PEAK;
         self.kept_spectra()
