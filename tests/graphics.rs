@@ -139,6 +139,51 @@ fn cores_leave_the_card_its_share_of_the_memory() {
     assert!(in_flight.is_some_and(|count| count > 4), "{record}");
 }
 
+/// `auto` takes a card that can, and otherwise searches on the cores: to the bytes of `--engine cpu`, but for its name, and
+/// with a warning if a card failed.
+#[test]
+fn auto_goes_on_without_a_card() {
+    if adapter().is_none() {
+        return;
+    }
+    let folder = place();
+    let dock = |name: &str, arguments: &str| {
+        let output = cargo_bin_cmd!("knotdock")
+            .current_dir(folder.path())
+            .env("WGPU_ADAPTER_NAME", name)
+            .args("dock receptor.pdb ligand.pdb --rotations 40 --write-top 0 --quiet".split(' '))
+            .args(arguments.split(' '))
+            .output()
+            .unwrap();
+        assert!(output.status.success(), "{output:?}");
+        let run = arguments.rsplit(' ').next().unwrap();
+        let rows = rows(&folder.path().join(run));
+        let machine = record(&folder.path().join(run))["machine"].clone();
+        (String::from_utf8(output.stderr).unwrap(), rows, machine)
+    };
+    let (_, of_cores, _) = dock("", "--engine cpu -o cpu");
+    // A name, even of a part that all have, chooses a program that plays a card, too.
+    let (warning, _, machine) = dock("l", "--engine auto -o taken");
+    assert!(machine["adapter"]["name"].is_string(), "{machine}");
+    assert!(!warning.contains("cores"), "{warning}");
+    for (name, arguments, said) in [
+        (
+            "no such adapter",
+            "--engine auto -o none",
+            "no such adapter",
+        ),
+        ("l", "--engine auto --precision double -o double", ""),
+    ] {
+        let (warning, rows, machine) = dock(name, arguments);
+        assert!(machine["adapter"].is_null(), "{machine}");
+        assert_eq!(machine["adapter_failure"].is_null(), said.is_empty());
+        assert!(warning.contains(said), "{warning}");
+        if !said.is_empty() {
+            assert_eq!(rows, of_cores);
+        }
+    }
+}
+
 /// With or without an adapter: nothing is left behind, and the words say what to do.
 #[test]
 fn what_cannot_be_had_is_refused() {

@@ -254,6 +254,11 @@ impl Docked {
         if let Some(redocking) = &self.redocking {
             console.say(format!("{}\n", redocking_text(redocking)));
         }
+        if let Some(reason) = &outcome.adapter_failure {
+            console.warn(format!(
+                "the cores searched, as no graphics processor could: {reason}"
+            ));
+        }
         if let Some(warning) = error_warning(plan, outcome) {
             console.warn(warning);
         }

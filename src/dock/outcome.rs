@@ -148,6 +148,8 @@ pub struct DockOutcome {
     pub timing: Vec<StageTime>,
     /// The graphics processor that correlated, if one did.
     pub adapter: Option<Adapter>,
+    /// Why no graphics processor did, if one was to be taken if it could.
+    pub adapter_failure: Option<String>,
 }
 
 #[cfg(test)]

@@ -97,6 +97,7 @@ pub(super) struct Searched<'a> {
     rank_error: f64,
     components: [f64; Effect::ALL.len()],
     adapter: Option<Adapter>,
+    adapter_failure: Option<String>,
     clock: Stopwatch,
 }
 
@@ -127,7 +128,8 @@ impl<'a> Searched<'a> {
         let grid_pose = |peak| engine.grid_pose(&plan.search, peak);
         let grid_poses: Vec<Pose> = found.peaks.iter().map(grid_pose).collect();
         // The engine goes before the potentials come, which may take ten times its memory.
-        let (rank, adapter) = (engine.cpu.rank(), engine.adapter.clone());
+        let rank = engine.cpu.rank();
+        let (adapter, adapter_failure) = (engine.adapter(), engine.failure());
         drop(engine);
         let field =
             spectra.map(|spectra| PotentialGrid::new(&plan.search.engine, &spectra, &plan.ligand));
@@ -144,6 +146,7 @@ impl<'a> Searched<'a> {
             rank_error,
             components,
             adapter,
+            adapter_failure,
             clock,
         })
     }
@@ -196,6 +199,7 @@ impl<'a> Searched<'a> {
             rank_error,
             components,
             adapter,
+            adapter_failure,
             mut clock,
         } = self;
         let scorers = (&scorer, rescorer.as_ref());
@@ -265,6 +269,7 @@ impl<'a> Searched<'a> {
             fine: found.fine,
             timing,
             adapter,
+            adapter_failure,
         })
     }
 }

@@ -26,11 +26,12 @@ options! {
         ///
         /// single allows tolerances down to 1e-4, double down to 1e-6. What is reported is in double precision either way.
         precision: Precision = Precision::Single, "single|double", Choice;
-        /// What computes the correlations: cpu, or gpu, a graphics processor.
+        /// What computes the correlations: cpu; gpu, a graphics processor; or auto, which takes one if it can.
         ///
-        /// A graphics processor works through Vulkan, Metal or Direct3D 12, in single precision. If there are several, the
+        /// auto goes on with the CPU if there is no graphics processor of its own, if one fails, which a warning says, or if
+        /// the options need the CPU. A graphics processor works through Vulkan, Metal or Direct3D 12, in single precision. If there are several, the
         /// environment variable WGPU_ADAPTER_NAME names one.
-        engine: EngineChoice = EngineChoice::Cpu, "cpu|gpu", Choice;
+        engine: EngineChoice = EngineChoice::Cpu, "cpu|gpu|auto", Choice;
         /// Peaks kept of each rotation.
         per_rotation: usize = 3, "COUNT", Range::between(1.0, 1e4);
         /// Poses kept of all rotations.
@@ -101,6 +102,8 @@ pub enum EngineChoice {
     Cpu,
     /// A graphics processor, in single precision.
     Gpu,
+    /// A graphics processor if there is one that can, else the CPU's cores.
+    Auto,
 }
 
 #[cfg(test)]

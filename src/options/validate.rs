@@ -93,7 +93,7 @@ impl DockOptions {
                 let context = format!("with --symmetry {symmetry}");
                 return Err(left_out(name, &value, &context));
             }
-            if self.search.engine != EngineChoice::Cpu {
+            if self.search.engine == EngineChoice::Gpu {
                 let bound = format!("cpu with --{name}");
                 return Err(refused("engine", &name_of(self.search.engine), &bound));
             }
@@ -122,7 +122,7 @@ impl DockOptions {
             let context = format!("{with}, for every ring is refined");
             return Err(left_out("refine", &refined.to_string(), &context));
         }
-        if self.search.engine != EngineChoice::Cpu {
+        if self.search.engine == EngineChoice::Gpu {
             let value = name_of(self.search.engine);
             return Err(refused("engine", &value, &format!("cpu {with}")));
         }
@@ -145,9 +145,19 @@ impl DockOptions {
         Ok(())
     }
 
+    /// The engine that these options can have: under `auto` a graphics processor only if nothing asks for the CPU.
+    pub(crate) fn engine(&self) -> EngineChoice {
+        let mut on_card = self.clone();
+        on_card.search.engine = EngineChoice::Gpu;
+        match self.search.engine {
+            EngineChoice::Auto if on_card.validate().is_err() => EngineChoice::Cpu,
+            engine => engine,
+        }
+    }
+
     fn check_engine(&self) -> Result<(), Error> {
         let search = &self.search;
-        if search.engine == EngineChoice::Cpu {
+        if search.engine != EngineChoice::Gpu {
             return Ok(());
         }
         if !cfg!(feature = "gpu") {

@@ -88,6 +88,7 @@ pub fn machine(plan: &DockPlan) -> Machine {
         memory_estimate_bytes: plan.memory_bytes(),
         memory_stage: plan.largest_stage(),
         adapter: None,
+        adapter_failure: None,
         command: std::env::args_os()
             .map(|word| word.to_string_lossy().into_owned())
             .collect(),
@@ -246,6 +247,7 @@ impl<'a> FinishedRun<'a> {
             machine: Machine {
                 chosen: self.chosen.cloned(),
                 adapter: outcome.adapter.clone(),
+                adapter_failure: outcome.adapter_failure.clone(),
                 ..machine(plan)
             },
         };

@@ -56,7 +56,7 @@ impl SearchPlan {
             kept: options.search.poses,
             stop_after: options.stopped.map(|stopped| stopped.rotations),
             in_flight,
-            device: options.search.engine,
+            device: options.engine(),
             graphics_bytes,
         }
     }

@@ -1,5 +1,7 @@
 //! The scan of all rotations: the best grid poses that it finds.
 
+#[cfg(feature = "gpu")]
+use crate::options::EngineChoice;
 use crate::pose_space::rotations::RotationGroup;
 use crate::progress::Progress;
 use crate::search::allowed::Region;
@@ -52,8 +54,16 @@ pub(crate) fn scan(
     };
     #[cfg(feature = "gpu")]
     let mut scanned = match &engine.gpu {
-        Some(gpu) => scan_on_card(plan, gpu, groups, most, progress)?,
-        None => on_cores(),
+        Some(gpu) if engine.failure().is_none() => {
+            match scan_on_card(plan, gpu, groups, most, progress) {
+                Err(error) if plan.device == EngineChoice::Auto => {
+                    engine.leave_card(&error);
+                    on_cores()
+                }
+                scanned => scanned?,
+            }
+        }
+        _ => on_cores(),
     };
     #[cfg(not(feature = "gpu"))]
     let mut scanned = on_cores();

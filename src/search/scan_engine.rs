@@ -7,11 +7,12 @@ use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::Error;
 use serde::Serialize;
+use std::sync::OnceLock;
 
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::GpuEngine;
 #[cfg(feature = "gpu")]
-use knotdock_scoring::gpu::{ADAPTER_VARIABLE, GpuDevice};
+use knotdock_scoring::gpu::{ADAPTER_VARIABLE, GpuDevice, GpuError};
 #[cfg(feature = "gpu")]
 use knotdock_scoring::peaks::NEIGHBOURS;
 
@@ -51,6 +52,8 @@ pub(crate) struct ScanEngine {
     pub gpu: Option<GpuEngine>,
     /// The graphics processor in use.
     pub adapter: Option<Adapter>,
+    /// Why it is not in use, if it was to be taken if it could.
+    pub failure: OnceLock<String>,
     /// Rotations in flight on the CPU: the plan's, or fewer if the engine needs more memory than was planned.
     pub in_flight: usize,
 }
@@ -80,18 +83,49 @@ impl ScanEngine {
             #[cfg(feature = "gpu")]
             gpu: None,
             adapter: None,
+            failure: OnceLock::new(),
             in_flight: plan.in_flight,
         };
-        if plan.device == EngineChoice::Gpu {
-            engine.open_gpu(plan)?;
+        match plan.device {
+            EngineChoice::Cpu => {}
+            EngineChoice::Gpu => engine.open_gpu(plan)?,
+            EngineChoice::Auto => engine
+                .open_gpu(plan)
+                .unwrap_or_else(|error| engine.leave_card(&error)),
         }
         Ok(engine)
+    }
+
+    /// The graphics processor that correlated all, if one did.
+    pub fn adapter(&self) -> Option<Adapter> {
+        match self.failure.get() {
+            None => self.adapter.clone(),
+            Some(_) => None,
+        }
+    }
+
+    /// Why a graphics processor that was to be taken if it could was not.
+    pub fn failure(&self) -> Option<String> {
+        self.failure.get().cloned()
+    }
+
+    /// Goes on without the graphics processor.
+    pub fn leave_card(&self, error: &Error) {
+        // The first reason stands.
+        let _ = self.failure.set(error.to_string());
     }
 
     #[cfg(feature = "gpu")]
     fn open_gpu(&mut self, plan: &SearchPlan) -> Result<(), Error> {
         let name = std::env::var(ADAPTER_VARIABLE).ok();
-        let device = GpuDevice::open(name.as_deref()).map_err(no_graphics)?;
+        let is_chosen = plan.device == EngineChoice::Gpu || name.is_some();
+        let device = match GpuDevice::open(name.as_deref()) {
+            Err(GpuError::NoAdapter { .. }) if !is_chosen => return Ok(()),
+            device => device.map_err(no_graphics)?,
+        };
+        if device.is_software() && !is_chosen {
+            return Ok(());
+        }
         let (count, bytes) = (plan.per_rotation, plan.graphics_bytes);
         let gpu = GpuEngine::new(&device, &self.cpu, count, NEIGHBOURS, bytes);
         let gpu = gpu.map_err(no_graphics)?;

@@ -154,9 +154,9 @@ impl TradeoffCommand {
 
 /// Refuses a search on a graphics processor, and parameters without effect on the inputs.
 fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Error> {
-    if request.options.search.engine == EngineChoice::Gpu {
+    if request.options.search.engine != EngineChoice::Cpu {
         let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
-        return Err(Error::input(error).help("leave out --engine gpu"));
+        return Err(Error::input(error).help("leave out --engine"));
     }
     let other = if request.bodies.are_meshes() {
         Scope::Molecules

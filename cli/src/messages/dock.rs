@@ -415,7 +415,7 @@ pub fn expected_text(plan: &DockPlan, chosen: Option<&Chosen>, is_angle: bool) -
     let memory = plan.memory_bytes() as f64 / 1e6;
     text += &match plan.options.search.engine {
         EngineChoice::Gpu => format!(" on a graphics processor, in {memory:.0} MB"),
-        EngineChoice::Cpu => format!(
+        EngineChoice::Cpu | EngineChoice::Auto => format!(
             ": about {} of search and {memory:.0} MB on {}",
             time_text(plan.search_seconds(plan.rotations).max(0.1)),
             counted(plan.in_flight(), "thread")

@@ -52,9 +52,9 @@ impl MemoryPlan {
         }
         // The card takes its memory first, because it searches: the cores prepare and rescore, and fewer rotations in
         // flight on them cost little.
-        let graphics = match options.search.engine {
+        let graphics = match options.engine() {
             EngineChoice::Cpu => 0,
-            EngineChoice::Gpu => {
+            EngineChoice::Gpu | EngineChoice::Auto => {
                 let left = allowed.map(|allowed| allowed.saturating_sub(needed));
                 left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
             }

@@ -151,6 +151,8 @@ pub struct Machine {
     pub memory_limit_bytes: Option<u64>,
     /// The graphics processor that correlated; `null` where none did.
     pub adapter: Option<Adapter>,
+    /// With `--engine auto` the reason why none did, if one failed; else `null`.
+    pub adapter_failure: Option<String>,
     /// The command line.
     pub command: Vec<String>,
     /// The basis of settings that were chosen: by an accuracy, a time or a search for the gap.
