@@ -193,6 +193,7 @@ def errors(topologies: Path, pair: list) -> None:
         ("wrong_residue", pair, {"ambig_fname": wrong}, "999"),
         ("archive", pair, {"ambig_fname": archive}, "unpack wrong.tbl.tgz"),
         ("wrong_active", pair, {"active_ligand": "Q:1"}, "Remedy: "),
+        ("wrong_site", pair, {"site_receptor": "Q:1"}, "Remedy: "),
     ):
         step = module(topologies, name, models)
         try:

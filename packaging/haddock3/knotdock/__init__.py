@@ -160,8 +160,9 @@ class HaddockModule(BaseHaddockModule):
         if restraints := self._restraints():
             options += ["--restraints", str(restraints), "--restraints-need", params["restraints_need"]]
         for side in ("receptor", "ligand"):
-            if residues := params[f"active_{side}"]:
-                options += [f"--active-{side}", residues]
+            for kind in ("active", "site"):
+                if residues := params[f"{kind}_{side}"]:
+                    options += [f"--{kind}-{side}", residues]
         if params["config_fname"]:
             options += ["--config", str(params["config_fname"])]
         threads = parse_ncores(params["ncores"], max_cpus=params["max_cpus"])
