@@ -2,12 +2,12 @@
 //!
 //! Both samplings are of one spacing, so that both sums are within the two solids' eps together of the true one.
 
-use crate::minkowski::{Knot, Node, gap_of_balls, gap_of_nodes, write};
 use crate::report::Figure;
 use crate::scene::Scene;
 use crate::table::{Cell, Table};
 use crate::timing::least;
 use knotdock_cli::plot::chart::{Axis, Colour, Panel, Series, Style};
+use knotdock_scoring::minkowski::{Knot, Node, gap_of_balls, gap_of_nodes, write};
 
 /// Sums that are written at most, 400 MB of nodes; of more a share is timed and scaled up.
 const MOST_WRITTEN: usize = 1 << 24;

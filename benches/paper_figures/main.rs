@@ -29,7 +29,6 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
-mod minkowski;
 mod panels;
 mod report;
 mod scene;

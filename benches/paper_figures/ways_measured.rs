@@ -96,9 +96,9 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
     let body = &scene.bunny;
     let grid = Grid::new(scene.per_axis, scene.edge);
     let mut buffers = grid.buffers();
-    let rasterising = least(|| grid.rasterise(body, kernel, &mut buffers));
+    let rasterising = least(|| grid.rasterise(&body.knots(), &kernel.bump, &mut buffers));
     let forward = least(|| grid.forward(&mut buffers));
-    grid.rasterise(body, kernel, &mut buffers);
+    grid.rasterise(&body.knots(), &kernel.bump, &mut buffers);
     grid.forward(&mut buffers);
     let mut rows = Vec::new();
     for power in 6..=scene.per_axis.pow(3).ilog2() {

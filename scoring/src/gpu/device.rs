@@ -22,13 +22,16 @@ pub enum GpuError {
         found: Vec<String>,
     },
     /// The plan asks for more than the adapter has.
-    #[error("{adapter} is too small for this grid: {what}")]
+    #[error("{adapter} is too small: {what}")]
     TooSmall {
         /// The adapter's name.
         adapter: String,
         /// The missing feature or limit.
         what: String,
     },
+    /// Numbers that no computation takes.
+    #[error("{0}")]
+    Input(String),
     /// The driver reported an error.
     #[error("{adapter}: {message}")]
     Driver {
@@ -58,6 +61,8 @@ fn joined(found: &[String]) -> String {
 pub struct GpuDevice {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
+    /// Bytes that one buffer may have.
+    pub(crate) binding_limit: usize,
     info: wgpu::AdapterInfo,
     /// The first error that no call returned.
     failure: Arc<Mutex<Option<String>>>,
@@ -107,12 +112,23 @@ impl GpuDevice {
                 note(&noted, message);
             }
         });
+        let limits = device.limits();
+        let longest = (limits.max_buffer_size).min(limits.max_storage_buffer_binding_size);
         Ok(Self {
+            binding_limit: usize::try_from(longest).unwrap_or(usize::MAX),
             device,
             queue,
             info,
             failure,
         })
+    }
+
+    /// The device with buffers of at most `bytes`, for tests of computations that divide theirs.
+    pub fn with_buffers_of(&self, bytes: usize) -> Self {
+        Self {
+            binding_limit: bytes.min(self.binding_limit),
+            ..self.clone()
+        }
     }
 
     /// The adapter's name.
@@ -151,6 +167,22 @@ impl GpuDevice {
             .unwrap_or_else(PoisonError::into_inner)
             .clone();
         failure.map_or(Ok(()), |message| Err(self.driver(message)))
+    }
+
+    /// Refuses numbers that are not finite.
+    pub(crate) fn finite<const N: usize>(
+        &self,
+        what: &str,
+        all: &[[f64; N]],
+    ) -> Result<(), GpuError> {
+        let finite = |one: &[f64; N]| one.iter().all(|part| part.is_finite());
+        match all.iter().position(|one| !finite(one)) {
+            None => Ok(()),
+            Some(index) => Err(GpuError::Input(format!(
+                "{what} {index} is not finite: {:?}",
+                all[index]
+            ))),
+        }
     }
 
     pub(crate) fn driver(&self, message: String) -> GpuError {

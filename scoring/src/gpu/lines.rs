@@ -1,0 +1,76 @@
+//! The FFT of all lines along one axis of a row-major array.
+
+use super::kernel::{Kernel, Step, constants, groups};
+use super::line_fft::{self, Direction, WIDTH, radices, twiddles};
+use super::{GpuDevice, GpuError};
+
+/// Bytes of workgroup memory of every adapter.
+const MEMORY: usize = 16 << 10;
+/// Bytes of a complex number of a line, in both of its arrays.
+const PER_POINT: usize = 16;
+/// Most lines that a workgroup transforms together: beyond, a row of them is longer than a memory transaction.
+const MAX_LINES: usize = 16;
+
+/// A transform along one axis.
+pub(crate) struct Axis<'a> {
+    /// Lengths of the array before it, row-major.
+    pub shape: &'a [usize],
+    /// Which.
+    pub axis: usize,
+    pub direction: Direction,
+    /// Factor of each frequency that is kept. The first is -`below`, as of all of them for 0.
+    pub factors: &'a [f32],
+    pub below: usize,
+    /// Whether the numbers before it are whole (pairs of i32).
+    pub whole: bool,
+}
+
+impl Axis<'_> {
+    /// The transform from one buffer to another, the array after it as long along the axis as frequencies are kept.
+    pub fn step(
+        &self,
+        gpu: &GpuDevice,
+        source: &wgpu::Buffer,
+        kept: &wgpu::Buffer,
+    ) -> Result<Step, GpuError> {
+        let length = self.shape[self.axis];
+        let radices = radices(length).filter(|_| PER_POINT * length <= MEMORY);
+        let radices = radices.ok_or_else(|| {
+            gpu.too_small(format!(
+                "no transform of {length} points: at most {}, without a prime above 7",
+                MEMORY / PER_POINT
+            ))
+        })?;
+        let outer: usize = self.shape[..self.axis].iter().product();
+        let inner: usize = self.shape[self.axis + 1..].iter().product();
+        let lines = (MEMORY / (PER_POINT * length)).min(MAX_LINES);
+        let mut code = constants(&[
+            ("WIDTH", WIDTH),
+            ("LENGTH", length),
+            ("KEPT", self.factors.len()),
+            ("BELOW", self.below),
+            ("OUTER", outer),
+            ("INNER", inner),
+            ("LINES", lines),
+        ]);
+        let number = if self.whole { "i32" } else { "f32" };
+        code += &format!("alias Source = vec2<{number}>;\n");
+        code += &line_fft::source(length, &radices, lines, self.direction);
+        code += include_str!("lines.wgsl");
+        let kernel = Kernel::new(gpu, "lines", "main", &code)?;
+        let table = gpu.filled("twiddle", &twiddles(length, self.direction))?;
+        let factors = gpu.filled("factors", self.factors)?;
+        let groups = groups((outer * inner).div_ceil(lines));
+        kernel.step(gpu, &[&table, &factors, source, kept], groups)
+    }
+
+    /// Bytes read and written, and 5 n log2 n operations per line of n.
+    pub fn work(&self) -> [f64; 2] {
+        let length = self.shape[self.axis] as f64;
+        let lines = self.shape.iter().product::<usize>() as f64 / length;
+        [
+            8.0 * lines * (length + self.factors.len() as f64),
+            5.0 * lines * length * length.log2(),
+        ]
+    }
+}
