@@ -24,21 +24,17 @@ use crate::transform::nufft::{Plan, TransformError};
 use num_complex::Complex64;
 
 /// The computations of Behandish & Ilieş (CAD 70, 2016), section 5, on one processor.
+///
+/// Each is an error if the processor cannot hold it, or a number is not finite.
 pub trait Processor {
     /// Why one cannot be done.
     type Error: std::error::Error;
 
     /// The Minkowski sum of two sets of balls by pairs (Table 1): n1 n2 balls, those of one of `first` together.
-    ///
-    /// # Errors
-    /// If the processor cannot hold or compute it.
     fn pair_sums(&self, first: &[Knot], second: &[Knot]) -> Result<Vec<Knot>, Self::Error>;
 
     /// Signed distance from each place to the nearest ball of that sum, min |p - a - b| - (r_a + r_b); infinite without
     /// a pair. O(n1 n2) per place; no sum is kept.
-    ///
-    /// # Errors
-    /// If the processor cannot hold or compute it.
     fn pair_distances(
         &self,
         first: &[Knot],
@@ -47,9 +43,6 @@ pub trait Processor {
     ) -> Result<Vec<f64>, Self::Error>;
 
     /// The NDFT at any frequencies, in up to four dimensions: sum_j c_j exp(-2 pi i k.x_j). O(points x frequencies).
-    ///
-    /// # Errors
-    /// If the processor cannot hold or compute it.
     fn wave_sums<const D: usize>(
         &self,
         points: &[[f64; D]],
@@ -59,9 +52,6 @@ pub trait Processor {
 
     /// The adjoint, in real part: Re sum_k f_k exp(+2 pi i k.x) at each point, such as the truncated correlation at many
     /// translations of one rotation (eq. 50). O(points x frequencies).
-    ///
-    /// # Errors
-    /// If the processor cannot hold or compute it.
     fn wave_values<const D: usize>(
         &self,
         frequencies: &[[i32; D]],
@@ -71,9 +61,6 @@ pub trait Processor {
 
     /// Whether [`Self::wave_values`] exceeds `bound` for certain, by point: above it by more than this processor's
     /// rounding. With the bound of the modes left out, the points are translations that collide.
-    ///
-    /// # Errors
-    /// If the processor cannot hold or compute it.
     fn wave_hits<const D: usize>(
         &self,
         frequencies: &[[i32; D]],
@@ -84,9 +71,6 @@ pub trait Processor {
 
     /// The gap function of two sets of balls (section 5.2) at the n^3 points of a periodic cube, n even: row-major, z
     /// fastest, translation zero first. As [`crate::gap_grid`] with bumps of exponent 2.
-    ///
-    /// # Errors
-    /// If the processor cannot hold or compute it.
     fn gap_grid(
         &self,
         balls: [&[Knot]; 2],
@@ -95,9 +79,6 @@ pub trait Processor {
     ) -> Result<Vec<f64>, Self::Error>;
 
     /// The fast transform of points to modes, in three or four dimensions, as [`Plan::forward`].
-    ///
-    /// # Errors
-    /// If the processor cannot hold or compute it.
     fn knot_modes<const D: usize>(
         &self,
         plan: &Plan<f64, D>,

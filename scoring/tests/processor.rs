@@ -1,10 +1,7 @@
 //! The computations of `processor` on a graphics processor against those on the CPU in double precision.
 
-#[path = "scene/adapter.rs"]
-mod adapter;
-
+use crate::gpu::adapter::adapter;
 use crate::scene::Numbers;
-use adapter::adapter;
 use knotdock_scoring::gpu::{GpuDevice, GpuError, WaveSums};
 use knotdock_scoring::minkowski::{Knot, Node};
 use knotdock_scoring::processor::{Cpu, Processor};
@@ -121,27 +118,27 @@ fn sums_of_waves() {
         let (x, c) = (points::<D>(count, 1), weights(count, 2));
         let k = frequencies::<D>(modes, most, 3);
         let sums = WaveSums::forward(gpu, &x, &c, &k).unwrap();
-        sums.run().unwrap();
-        let ours = sums.read().unwrap();
+        sums.job.run().unwrap();
+        let ours = sums.job.read().unwrap();
         let theirs = Cpu.wave_sums(&x, &c, &k).unwrap();
         let error = worst(&ours, &theirs, |a, b| (a - b).norm());
         let size = sum_of_sizes(&c);
         println!(
             "{D} axes, {count} points, |k| < {most:e}: {:.1e} of {:.1e}",
             error / size,
-            sums.rounding() / size
+            sums.rounding / size
         );
-        assert!(error <= sums.rounding());
+        assert!(error <= sums.rounding);
         // Far below the bound, where the phases are exact.
         assert!(most > 1e3 || error < 1e-6 * size);
-        sums.run().unwrap();
-        assert_eq!(sums.read().unwrap(), ours);
+        sums.job.run().unwrap();
+        assert_eq!(sums.job.read().unwrap(), ours);
         // Another number of frequencies divides the points otherwise; buffers of 8 chunks of 128.
         let divided = gpu.with_buffers_of((24 * count).max(1 << 13));
         let error = worst(&divided.wave_sums(&x, &c, &k).unwrap(), &ours, |a, b| {
             (a - b).norm()
         });
-        assert!(error <= sums.rounding());
+        assert!(error <= sums.rounding);
     }
     check::<3>(&gpu, 1, 60.0, 1);
     check::<3>(&gpu, 300, 60.0, 1000);
@@ -179,11 +176,11 @@ fn values_and_hits_of_many_translations() {
     let c = weights(x.len(), 7);
     let forward = gpu.wave_sums(&x, &c, &k).unwrap();
     let adjoint = WaveSums::adjoint(&gpu, &k, &modes, &x).unwrap();
-    adjoint.run().unwrap();
+    adjoint.job.run().unwrap();
     let dot = |a: &[Complex64], b: &[Complex64]| -> Complex64 {
         a.iter().zip(b).map(|(a, b)| a * b.conj()).sum()
     };
-    let (left, right) = (dot(&forward, &modes), dot(&c, &adjoint.read().unwrap()));
+    let (left, right) = (dot(&forward, &modes), dot(&c, &adjoint.job.read().unwrap()));
     assert!((left - right).norm() < 1e-6 * size * sum_of_sizes(&c));
 
     let bound = 0.1 * size;
@@ -193,7 +190,7 @@ fn values_and_hits_of_many_translations() {
     assert!(hits.count() > 10 && exact.count() < x.len() / 2);
     for (index, value) in theirs.iter().enumerate() {
         assert!(exact.contains(index) || !hits.contains(index));
-        if *value > bound + 2.0 * adjoint.rounding() {
+        if *value > bound + 2.0 * adjoint.rounding {
             assert!(hits.contains(index));
         }
     }

@@ -7,31 +7,30 @@
 //! length roundings of the root mean square. They are a share of the largest value of g, so that values far below it
 //! keep fewer digits.
 
-use super::kernel::{Kernel, Step, constants, groups};
+use super::kernel::{Kernel, constants, groups};
 use super::line_fft::{Direction, WIDTH};
 use super::lines::Axis;
-use super::{GpuDevice, GpuError};
+use super::{GpuDevice, GpuError, Job};
 use crate::minkowski::Knot;
 use crate::processor::Cost;
 
 /// Points of a block along x, y and z.
 const BLOCK: [usize; 3] = [4, 4, 8];
 /// Most balls near one block: a driver may cut loops short after 65,536 rounds.
-const MAX_NEAR: usize = 60_000;
+const MAX_NEAR: u32 = 60_000;
 
-/// The gap function of two sets of balls, ready to run.
+/// The gap function of two sets of balls.
 pub struct GapGrid {
-    gpu: GpuDevice,
-    rasterise: Step,
-    transforms: Vec<Step>,
-    values: wgpu::Buffer,
-    per_axis: usize,
-    /// (h / n)^3, the factor of the product.
-    factor: f64,
-    /// Balls near all blocks.
-    near: usize,
-    /// Bytes and operations of the six transforms.
-    work: [f64; 2],
+    /// Samples both solids on the grid: the real and imaginary part of its points, row-major, z fastest.
+    ///
+    /// Cost: per ball near a block 16 bytes and, at each of its 128 points, 15 operations; 8 bytes per grid point.
+    pub rasterise: Job<[f32; 2]>,
+    /// Transforms the sampled solids, multiplies and transforms back: the values, row-major, z fastest, translation zero
+    /// first. The samples are lost.
+    ///
+    /// Cost: in each of six passes 16 bytes per point and 5 n log2 n operations per line of n; in the product 24 bytes
+    /// and 14 operations per point.
+    pub correlate: Job<f64>,
 }
 
 impl GapGrid {
@@ -60,23 +59,30 @@ impl GapGrid {
             gpu.zeros("grid", 8 * points)?,
         ];
         let (starts, near) = near_blocks(balls, per_axis, edge);
-        if starts
-            .windows(2)
-            .any(|pair| pair[1] - pair[0] > MAX_NEAR as u32)
-        {
+        if starts.windows(3).any(|ends| ends[2] - ends[0] > MAX_NEAR) {
             return Err(gpu.too_small(format!("more than {MAX_NEAR} balls meet at one place")));
         }
         let code = constants(&[("WIDTH", WIDTH), ("N", per_axis)]) + include_str!("gap_grid.wgsl");
-        let raster = [
+        let rasterise = Kernel::new(gpu, "rasterise", "rasterise", &code)?;
+        let buffers = [
             &gpu.filled("balls", &near)?,
             &gpu.filled("starts", &starts)?,
             &arrays[0],
         ];
         let [x, y, z] = BLOCK.map(|side| per_axis.div_ceil(side));
-        let rasterise = Kernel::new(gpu, "rasterise", "rasterise", &code)?;
-        let rasterise = rasterise.step(gpu, &raster, [z, y, x])?;
-        let (mut transforms, mut work) = (Vec::new(), [0.0; 2]);
-        let (mut from, mut to) = (&arrays[0], &arrays[1]);
+        let step = rasterise.step(gpu, &buffers, [z, y, x])?;
+        let cost = Cost {
+            bytes: 16.0 * near.len() as f64 + 8.0 * points as f64,
+            operations: 15.0 * 128.0 * near.len() as f64,
+        };
+        let samples = vec![(arrays[0].clone(), points)];
+        let rasterise = Job::new(gpu, vec![step], samples, cost, |values| values);
+        let mut cost = Cost {
+            bytes: 24.0 * points as f64,
+            operations: 14.0 * points as f64,
+        };
+        let mut steps = Vec::new();
+        let (mut before, mut after) = (&arrays[0], &arrays[1]);
         let factors = vec![1.0; per_axis];
         for direction in [Direction::Forward, Direction::Inverse] {
             for axis in [2, 1, 0] {
@@ -88,73 +94,23 @@ impl GapGrid {
                     below: 0,
                     whole: false,
                 };
-                transforms.push(axis.step(gpu, from, to)?);
-                work = [work[0] + axis.work()[0], work[1] + axis.work()[1]];
-                std::mem::swap(&mut from, &mut to);
+                steps.push(axis.step(gpu, before, after, &mut cost)?);
+                std::mem::swap(&mut before, &mut after);
             }
             if direction == Direction::Forward {
                 let multiply = Kernel::new(gpu, "multiply", "multiply", &code)?;
                 let groups = groups(points.div_ceil(WIDTH));
-                transforms.push(multiply.step(gpu, &[from, to], groups)?);
-                std::mem::swap(&mut from, &mut to);
+                steps.push(multiply.step(gpu, &[before, after], groups)?);
+                std::mem::swap(&mut before, &mut after);
             }
         }
+        let factor = (edge / per_axis as f64 / per_axis as f64).powi(3);
+        let scaled = move |[value, _]: [f32; 2]| f64::from(value) * factor;
+        let values = vec![(before.clone(), points)];
         Ok(Self {
-            gpu: gpu.clone(),
             rasterise,
-            transforms,
-            values: from.clone(),
-            per_axis,
-            factor: (edge / per_axis as f64 / per_axis as f64).powi(3),
-            near: near.len(),
-            work,
+            correlate: Job::new(gpu, steps, values, cost, scaled),
         })
-    }
-
-    /// Samples both solids on the grid, and waits.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn rasterise(&self) -> Result<(), GpuError> {
-        self.gpu.run(&[], std::slice::from_ref(&self.rasterise))
-    }
-
-    /// Transforms the sampled solids, multiplies and transforms back, and waits. The samples are lost.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn correlate(&self) -> Result<(), GpuError> {
-        self.gpu.run(&[], &self.transforms)
-    }
-
-    /// The values after [`Self::rasterise`] and [`Self::correlate`]: row-major, z fastest, translation zero first.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn read(&self) -> Result<Vec<f64>, GpuError> {
-        let values: Vec<[f32; 2]> = self.gpu.read(&self.values, self.per_axis.pow(3))?;
-        let scaled = |[value, _]: &[f32; 2]| f64::from(*value) * self.factor;
-        Ok(values.iter().map(scaled).collect())
-    }
-
-    /// Of [`Self::rasterise`]: per ball near a block 16 bytes and, at each of its 128 points, 15 operations; 8 bytes per
-    /// grid point.
-    pub fn raster_cost(&self) -> Cost {
-        let near = self.near as f64;
-        Cost {
-            bytes: 16.0 * near + 8.0 * self.per_axis.pow(3) as f64,
-            operations: 15.0 * 128.0 * near,
-        }
-    }
-
-    /// Of [`Self::correlate`], for N points: in each of six passes 16 bytes per point and 5 N log2 n operations; in the
-    /// product 24 bytes and 14 operations per point.
-    pub fn cost(&self) -> Cost {
-        let points = self.per_axis.pow(3) as f64;
-        Cost {
-            bytes: self.work[0] + 24.0 * points,
-            operations: self.work[1] + 14.0 * points,
-        }
     }
 }
 
@@ -165,7 +121,7 @@ fn near_blocks(balls: [&[Knot]; 2], per_axis: usize, edge: f64) -> (Vec<u32>, Ve
     let cells = per_axis as f64 / edge;
     let mut lists = vec![Vec::new(); 2 * blocks.iter().product::<i64>() as usize];
     for (solid, balls) in balls.into_iter().enumerate() {
-        for ball in balls {
+        for ball in balls.iter().filter(|ball| ball[3] > 0.0) {
             let [x, y, z, r] = ball.map(|part| part * cells);
             let center = [x, y, z];
             // By axis: place of the block, and the distance of the centre from its first point. Periods count apart, as

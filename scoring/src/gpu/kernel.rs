@@ -14,6 +14,7 @@ pub(crate) struct Kernel {
 }
 
 /// A kernel with its buffers and its number of workgroups.
+#[derive(Clone)]
 pub(crate) struct Step {
     pipeline: wgpu::ComputePipeline,
     bindings: wgpu::BindGroup,
@@ -148,7 +149,7 @@ impl GpuDevice {
     }
 
     /// Clears buffers, runs the steps in order, and waits.
-    pub(crate) fn run(&self, clear: &[&wgpu::Buffer], steps: &[Step]) -> Result<(), GpuError> {
+    pub(crate) fn run(&self, clear: &[wgpu::Buffer], steps: &[Step]) -> Result<(), GpuError> {
         let mut encoder = self
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
@@ -166,26 +167,23 @@ impl GpuDevice {
         self.wait(self.queue.submit([encoder.finish()]))
     }
 
-    /// The first `count` values of a buffer of [`Self::zeros`].
-    pub(crate) fn read<T: Pod>(
+    /// The first `bytes` (some) of a buffer of [`Self::zeros`], through `view`.
+    pub(crate) fn read<T>(
         &self,
         buffer: &wgpu::Buffer,
-        count: usize,
-    ) -> Result<Vec<T>, GpuError> {
-        if count == 0 {
-            return Ok(Vec::new());
-        }
-        let bytes = (count * size_of::<T>()) as u64;
+        bytes: usize,
+        view: impl FnOnce(&[u8]) -> T,
+    ) -> Result<T, GpuError> {
         let results = self.device.create_buffer(&wgpu::BufferDescriptor {
             label: Some("results"),
-            size: bytes,
+            size: bytes as u64,
             usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
             mapped_at_creation: false,
         });
         let mut encoder = self
             .device
             .create_command_encoder(&wgpu::CommandEncoderDescriptor::default());
-        encoder.copy_buffer_to_buffer(buffer, 0, &results, 0, bytes);
+        encoder.copy_buffer_to_buffer(buffer, 0, &results, 0, bytes as u64);
         let submission = self.queue.submit([encoder.finish()]);
         let (sender, mapped) = std::sync::mpsc::channel();
         results.map_async(wgpu::MapMode::Read, .., move |result| {
@@ -197,9 +195,9 @@ impl GpuDevice {
             Ok(Ok(())) => {}
             _ => return Err(self.driver("results could not be read back".into())),
         }
-        let view = results
+        let bytes = results
             .get_mapped_range(..)
             .map_err(|error| self.driver(error.to_string()))?;
-        Ok(bytemuck::cast_slice(&view).to_vec())
+        Ok(view(&bytes))
     }
 }

@@ -8,29 +8,21 @@
 use super::kernel::{Kernel, Step, constants, groups};
 use super::line_fft::{Direction, WIDTH};
 use super::lines::Axis;
-use super::{GpuDevice, GpuError};
+use super::{GpuDevice, GpuError, Job};
 use crate::processor::Cost;
 use crate::transform::nufft::Plan;
 use num_complex::Complex64;
 
-/// The modes of a set of knots, ready to run.
-pub struct KnotModes {
-    gpu: GpuDevice,
-    steps: Vec<Step>,
-    fine: wgpu::Buffer,
-    modes: wgpu::Buffer,
-    mode_count: usize,
-    /// Value of 1 in the whole numbers.
-    unit: f64,
-    cost: Cost,
-}
-
-impl KnotModes {
-    /// Uploads points (in units of the period) and weights.
+impl Job<Complex64> {
+    /// The modes of knots, in the plan's order. Points are in units of the period.
+    ///
+    /// Cost: the grid is cleared (8 bytes per point); per knot and point of its window 16 bytes, a polynomial along the
+    /// last axis and 5 operations; per axis 8 bytes of each point before and mode after, and 5 n log2 n operations per
+    /// line of n.
     ///
     /// # Errors
     /// [`GpuError`] if a number is not finite, or the fine grid does not fit a buffer.
-    pub fn new<const D: usize>(
+    pub fn knot_modes<const D: usize>(
         gpu: &GpuDevice,
         plan: &Plan<f64, D>,
         points: &[[f64; D]],
@@ -59,7 +51,7 @@ impl KnotModes {
             .iter()
             .map(|part| part.map(|x| (x / unit) as f32))
             .collect();
-        let shape = plan.grid();
+        let mut shape = plan.grid();
         let points_of_grid: usize = shape.iter().product();
         let fine = gpu.zeros("fine grid", 8 * points_of_grid)?;
         let mut steps = Vec::new();
@@ -74,8 +66,7 @@ impl KnotModes {
             bytes: 8.0 * points_of_grid as f64 + 16.0 * spread_points,
             operations: spread_points * (2.0 * window.len() as f64 + 5.0),
         };
-        let mut shape = shape;
-        let mut from = fine.clone();
+        let mut before = fine.clone();
         for axis in (0..D).rev() {
             let factors: Vec<f32> = plan.factors(axis).iter().map(|&x| x as f32).collect();
             let along = Axis {
@@ -87,48 +78,14 @@ impl KnotModes {
                 whole: axis == D - 1,
             };
             let left: usize = shape.iter().product::<usize>() / shape[axis] * factors.len();
-            let to = gpu.zeros("modes", 8 * left)?;
-            steps.push(along.step(gpu, &from, &to)?);
-            let [bytes, operations] = along.work();
-            cost.bytes += bytes;
-            cost.operations += operations;
+            let after = gpu.zeros("modes", 8 * left)?;
+            steps.push(along.step(gpu, &before, &after, &mut cost)?);
             shape[axis] = factors.len();
-            from = to;
+            before = after;
         }
-        Ok(Self {
-            gpu: gpu.clone(),
-            steps,
-            fine,
-            modes: from,
-            mode_count: plan.mode_count(),
-            unit,
-            cost,
-        })
-    }
-
-    /// Spreads the knots and transforms the grid, and waits.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn run(&self) -> Result<(), GpuError> {
-        self.gpu.run(&[&self.fine], &self.steps)
-    }
-
-    /// The modes, in the plan's order.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn read(&self) -> Result<Vec<Complex64>, GpuError> {
-        let modes: Vec<[f32; 2]> = self.gpu.read(&self.modes, self.mode_count)?;
-        let scaled =
-            |[re, im]: &[f32; 2]| Complex64::new(f64::from(*re), f64::from(*im)) * self.unit;
-        Ok(modes.iter().map(scaled).collect())
-    }
-
-    /// The grid is cleared (8 bytes per point). Per knot and point of its window 16 bytes, a polynomial along the last
-    /// axis and 5 operations. Per axis 8 bytes of each point before and mode after, and 5 n log2 n operations per line.
-    pub fn cost(&self) -> Cost {
-        self.cost
+        let scaled = move |[re, im]: [f32; 2]| Complex64::new(f64::from(re), f64::from(im)) * unit;
+        let outputs = vec![(before, plan.mode_count())];
+        Ok(Self::new(gpu, steps, outputs, cost, scaled).clearing(&fine))
     }
 }
 

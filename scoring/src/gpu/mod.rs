@@ -1,11 +1,12 @@
 //! Graphics processors through wgpu (Vulkan, Metal, Direct3D 12), in single precision: the device, what its shaders
 //! share, and the computations of [`crate::processor`].
 //!
-//! A computation is made from its input, which it uploads. `run` then computes on the card alone and waits, as often as
-//! one likes, and `read` brings the result back.
+//! A [`Job`] uploads its input when it is made: [`Job::pair_sums`], [`Job::pair_distances`], [`Job::knot_modes`],
+//! [`WaveSums`], [`GapGrid`]. It then runs on the card alone, and is read back apart.
 
 mod device;
 mod gap_grid;
+mod job;
 pub(crate) mod kernel;
 mod knot_modes;
 pub(crate) mod line_fft;
@@ -16,6 +17,5 @@ mod wave_sums;
 
 pub use device::{ADAPTER_VARIABLE, GpuDevice, GpuError};
 pub use gap_grid::GapGrid;
-pub use knot_modes::KnotModes;
-pub use pair_sums::{PairDistances, PairSums};
-pub use wave_sums::{WaveHits, WaveSums};
+pub use job::Job;
+pub use wave_sums::WaveSums;

@@ -1,18 +1,21 @@
 //! The computations of [`crate::processor`] on the card: uploaded, run and read back at each call.
 
-use super::{GapGrid, GpuDevice, GpuError, KnotModes, PairDistances, PairSums, WaveSums};
+use super::{GapGrid, GpuDevice, GpuError, Job, WaveSums};
 use crate::minkowski::{Knot, Node};
 use crate::processor::{Hits, Processor};
 use crate::transform::nufft::Plan;
 use num_complex::Complex64;
 
+fn done<T>(job: &Job<T>) -> Result<Vec<T>, GpuError> {
+    job.run()?;
+    job.read()
+}
+
 impl Processor for GpuDevice {
     type Error = GpuError;
 
     fn pair_sums(&self, first: &[Knot], second: &[Knot]) -> Result<Vec<Knot>, GpuError> {
-        let sums = PairSums::new(self, first, second)?;
-        sums.run()?;
-        sums.read()
+        done(&Job::pair_sums(self, first, second)?)
     }
 
     fn pair_distances(
@@ -21,9 +24,7 @@ impl Processor for GpuDevice {
         second: &[Knot],
         places: &[Node],
     ) -> Result<Vec<f64>, GpuError> {
-        let distances = PairDistances::new(self, first, second, places)?;
-        distances.run()?;
-        distances.read()
+        done(&Job::pair_distances(self, first, second, places)?)
     }
 
     fn wave_sums<const D: usize>(
@@ -32,9 +33,7 @@ impl Processor for GpuDevice {
         weights: &[Complex64],
         frequencies: &[[i32; D]],
     ) -> Result<Vec<Complex64>, GpuError> {
-        let sums = WaveSums::forward(self, points, weights, frequencies)?;
-        sums.run()?;
-        sums.read()
+        done(&WaveSums::forward(self, points, weights, frequencies)?.job)
     }
 
     fn wave_values<const D: usize>(
@@ -43,9 +42,8 @@ impl Processor for GpuDevice {
         modes: &[Complex64],
         points: &[[f64; D]],
     ) -> Result<Vec<f64>, GpuError> {
-        let sums = WaveSums::adjoint(self, frequencies, modes, points)?;
-        sums.run()?;
-        Ok(sums.read()?.into_iter().map(|sum| sum.re).collect())
+        let sums = done(&WaveSums::adjoint(self, frequencies, modes, points)?.job)?;
+        Ok(sums.into_iter().map(|sum| sum.re).collect())
     }
 
     fn wave_hits<const D: usize>(
@@ -55,9 +53,9 @@ impl Processor for GpuDevice {
         points: &[[f64; D]],
         bound: f64,
     ) -> Result<Hits, GpuError> {
-        let hits = WaveSums::adjoint(self, frequencies, modes, points)?.hits(bound)?;
-        hits.run()?;
-        hits.read()
+        let sums = WaveSums::adjoint(self, frequencies, modes, points)?;
+        let mask = done(&sums.hits(bound)?)?;
+        Ok(Hits { mask })
     }
 
     fn gap_grid(
@@ -67,9 +65,8 @@ impl Processor for GpuDevice {
         edge: f64,
     ) -> Result<Vec<f64>, GpuError> {
         let gap = GapGrid::new(self, balls, per_axis, edge)?;
-        gap.rasterise()?;
-        gap.correlate()?;
-        gap.read()
+        gap.rasterise.run()?;
+        done(&gap.correlate)
     }
 
     fn knot_modes<const D: usize>(
@@ -78,8 +75,6 @@ impl Processor for GpuDevice {
         points: &[[f64; D]],
         weights: &[Complex64],
     ) -> Result<Vec<Complex64>, GpuError> {
-        let modes = KnotModes::new(self, plan, points, weights)?;
-        modes.run()?;
-        modes.read()
+        done(&Job::knot_modes(self, plan, points, weights)?)
     }
 }

@@ -11,9 +11,9 @@
 //! chunk, C chunks) and a few roundings of waves and weights, each in any direction, as if all were in phase. Measured
 //! errors are a hundred times smaller.
 
-use super::kernel::{Kernel, Step, constants, groups};
-use super::{GpuDevice, GpuError};
-use crate::processor::{Cost, Hits, largest};
+use super::kernel::{Kernel, constants, groups};
+use super::{GpuDevice, GpuError, Job};
+use crate::processor::{Cost, largest};
 use num_complex::Complex64;
 use std::f64::consts::TAU;
 
@@ -24,15 +24,16 @@ const MANY: usize = 1 << 18;
 /// Most terms of a chunk: a driver may cut loops short after 65,536 rounds in all.
 const MAX_CHUNK: usize = 1 << 14;
 
-/// sum_j c_j exp(-+2 pi i k.x_j), one sum per frequency or per point, ready to run.
+/// sum_j c_j exp(-+2 pi i k.x_j), one sum per frequency or per point.
+///
+/// Cost: per sum and term 28 operations in single precision and 7 of integers; per 128 sums all terms (24 bytes each);
+/// per sum itself (24 bytes) and its chunks, written and read (16 bytes each).
 pub struct WaveSums {
-    gpu: GpuDevice,
+    /// The sums, in the order of the frequencies or points.
+    pub job: Job<Complex64>,
+    /// Bound of the error of each sum: see the module.
+    pub rounding: f64,
     parts: Vec<Part>,
-    steps: Vec<Step>,
-    terms: usize,
-    chunks: usize,
-    /// Bound of the rounding error of a sum.
-    rounding: f64,
 }
 
 /// Sums that fit a buffer.
@@ -40,13 +41,6 @@ struct Part {
     rows: usize,
     sizes: wgpu::Buffer,
     sums: wgpu::Buffer,
-}
-
-/// Which real parts of [`WaveSums`] exceed a bound, ready to run.
-pub struct WaveHits {
-    sums: WaveSums,
-    steps: Vec<Step>,
-    masks: Vec<wgpu::Buffer>,
 }
 
 impl WaveSums {
@@ -110,16 +104,13 @@ impl WaveSums {
         let chunk = terms.len().div_ceil(wanted).min(MAX_CHUNK);
         let chunk = chunk.next_multiple_of(WIDTH).max(WIDTH);
         let chunks = terms.len().div_ceil(chunk);
-        let source = constants(&[("WIDTH", WIDTH)]) + include_str!("wave_sums.wgsl");
-        let sum = Kernel::new(gpu, "sums of waves", "sum_chunks", &source)?;
-        let add = Kernel::new(gpu, "sums of chunks", "add_chunks", &source)?;
+        let sum = Kernel::new(gpu, "sums of waves", "sum_chunks", &source())?;
+        let add = Kernel::new(gpu, "sums of chunks", "add_chunks", &source())?;
         // Whole words of a mask of hits.
         let most = (gpu.binding_limit / (8 * chunks.max(2)) / WIDTH * WIDTH).max(WIDTH);
         let scratch = gpu.zeros("chunks of sums", 8 * chunks * most.min(rows.len()))?;
-        let (terms_there, weights) = (
-            gpu.filled("terms", terms)?,
-            gpu.filled("weights", &weights)?,
-        );
+        let points = gpu.filled("terms", terms)?;
+        let weights = gpu.filled("weights", &weights)?;
         let (mut parts, mut steps) = (Vec::new(), Vec::new());
         for rows in rows.chunks(most) {
             let count = rows.len();
@@ -128,7 +119,7 @@ impl WaveSums {
             let sums = gpu.zeros("sums", 8 * count)?;
             let across = count.div_ceil(WIDTH);
             let rows = gpu.filled("rows", rows)?;
-            let buffers = [&sizes, &rows, &terms_there, &weights, &scratch];
+            let buffers = [&sizes, &rows, &points, &weights, &scratch];
             steps.push(sum.step(gpu, &buffers, groups(across * chunks))?);
             steps.push(add.step(gpu, &[&sizes, &scratch, &sums], groups(across))?);
             parts.push(Part {
@@ -138,102 +129,45 @@ impl WaveSums {
             });
         }
         let additions = (WIDTH + chunk / WIDTH + chunks + 12) as f64;
+        let (n, terms) = (rows.len() as f64, terms.len() as f64);
+        let cost = Cost {
+            bytes: 24.0 * (n / WIDTH as f64).ceil() * terms + n * (24.0 + 16.0 * chunks as f64),
+            operations: 35.0 * n * terms,
+        };
+        let outputs = parts
+            .iter()
+            .map(|part: &Part| (part.sums.clone(), part.rows));
+        let wide = |[re, im]: [f32; 2]| Complex64::new(f64::from(re), f64::from(im));
         Ok(Self {
-            gpu: gpu.clone(),
-            parts,
-            steps,
-            terms: terms.len(),
-            chunks,
+            job: Job::new(gpu, steps, outputs.collect(), cost, wide),
             rounding: size * (TAU * turns * 0.5f64.powi(33) + additions * 0.5f64.powi(23)),
+            parts,
         })
     }
 
-    /// Computes the sums, and waits.
+    /// The sums, and a mask of the real parts that exceed `bound` by more than the rounding error: a bit per sum, the
+    /// lowest first, as [`crate::processor::Hits`].
     ///
     /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn run(&self) -> Result<(), GpuError> {
-        self.gpu.run(&[], &self.steps)
-    }
-
-    /// The sums, in the order of the frequencies or points.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn read(&self) -> Result<Vec<Complex64>, GpuError> {
-        let mut all = Vec::new();
-        for part in &self.parts {
-            let sums: Vec<[f32; 2]> = self.gpu.read(&part.sums, part.rows)?;
-            let wide = |[re, im]: &[f32; 2]| Complex64::new(f64::from(*re), f64::from(*im));
-            all.extend(sums.iter().map(wide));
-        }
-        Ok(all)
-    }
-
-    /// Bound of the error of each sum: see the module.
-    pub fn rounding(&self) -> f64 {
-        self.rounding
-    }
-
-    /// Finds the real parts that exceed `bound` by more than [`Self::rounding`].
-    ///
-    /// # Errors
-    /// [`GpuError`] if the masks do not fit a buffer.
-    pub fn hits(self, bound: f64) -> Result<WaveHits, GpuError> {
-        let gpu = &self.gpu;
-        let source = constants(&[("WIDTH", WIDTH)]) + include_str!("wave_sums.wgsl");
-        let kernel = Kernel::new(gpu, "hits", "mark_hits", &source)?;
+    /// [`GpuError`] if the driver fails.
+    pub fn hits(&self, bound: f64) -> Result<Job<u32>, GpuError> {
+        let gpu = &self.job.gpu;
+        let kernel = Kernel::new(gpu, "hits", "mark_hits", &source())?;
         let level = gpu.filled("bound", &[((bound + self.rounding) as f32).next_up()])?;
-        let (mut steps, mut masks) = (Vec::new(), Vec::new());
+        let (mut steps, mut masks) = (self.job.steps.clone(), Vec::new());
         for part in &self.parts {
             let words = part.rows.div_ceil(32);
             let mask = gpu.zeros("mask", 4 * words)?;
             let buffers = [&part.sizes, &part.sums, &level, &mask];
             steps.push(kernel.step(gpu, &buffers, groups(words.div_ceil(WIDTH)))?);
-            masks.push(mask);
+            masks.push((mask, words));
         }
-        Ok(WaveHits {
-            sums: self,
-            steps,
-            masks,
-        })
-    }
-
-    /// Per row and term 28 operations in single precision and 7 of integers; per 128 rows all terms (24 bytes each), per
-    /// row itself and its sum (24 bytes) and its chunks, written and read (16 bytes each).
-    pub fn cost(&self) -> Cost {
-        let rows: usize = self.parts.iter().map(|part| part.rows).sum();
-        let (rows, terms) = (rows as f64, self.terms as f64);
-        Cost {
-            bytes: 24.0 * (rows / WIDTH as f64).ceil() * terms
-                + rows * (24.0 + 16.0 * self.chunks as f64),
-            operations: 35.0 * rows * terms,
-        }
+        Ok(Job::new(gpu, steps, masks, self.job.cost(), |word| word))
     }
 }
 
-impl WaveHits {
-    /// Computes sums and hits, and waits.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn run(&self) -> Result<(), GpuError> {
-        self.sums.run()?;
-        self.sums.gpu.run(&[], &self.steps)
-    }
-
-    /// The hits, in the order of the frequencies or points.
-    ///
-    /// # Errors
-    /// [`GpuError::Driver`] if the driver fails.
-    pub fn read(&self) -> Result<Hits, GpuError> {
-        let mut hits = Hits::default();
-        for (part, mask) in self.sums.parts.iter().zip(&self.masks) {
-            let words = part.rows.div_ceil(32);
-            hits.mask.extend(self.sums.gpu.read::<u32>(mask, words)?);
-        }
-        Ok(hits)
-    }
+fn source() -> String {
+    constants(&[("WIDTH", WIDTH)]) + include_str!("wave_sums.wgsl")
 }
 
 /// Coordinates as fractions of the period in units of 2^-32.
