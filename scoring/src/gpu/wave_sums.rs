@@ -33,6 +33,8 @@ pub struct WaveSums {
     pub job: Job<Complex64>,
     /// Bound of the error of each sum: see the module.
     pub rounding: f64,
+    /// Value of 1 on the card.
+    unit: f64,
     parts: Vec<Part>,
 }
 
@@ -97,8 +99,13 @@ impl WaveSums {
                 terms.len()
             )));
         }
-        let weights: Vec<[f32; 2]> = parts.iter().map(|part| part.map(|x| x as f32)).collect();
         let size: f64 = parts.iter().map(|[re, im]| re.hypot(*im)).sum();
+        // Sums of up to 1, so that single precision neither overflows nor underflows.
+        let unit = size.max(f64::MIN_POSITIVE).log2().ceil().exp2();
+        let weights: Vec<[f32; 2]> = parts
+            .iter()
+            .map(|part| part.map(|x| (x / unit) as f32))
+            .collect();
         // Few rows fill a card only if their terms are divided.
         let wanted = (MANY / rows.len().max(1)).max(1);
         let chunk = terms.len().div_ceil(wanted).min(MAX_CHUNK);
@@ -137,10 +144,11 @@ impl WaveSums {
         let outputs = parts
             .iter()
             .map(|part: &Part| (part.sums.clone(), part.rows));
-        let wide = |[re, im]: [f32; 2]| Complex64::new(f64::from(re), f64::from(im));
+        let wide = move |[re, im]: [f32; 2]| Complex64::new(f64::from(re), f64::from(im)) * unit;
         Ok(Self {
             job: Job::new(gpu, steps, outputs.collect(), cost, wide),
             rounding: size * (TAU * turns * 0.5f64.powi(33) + additions * 0.5f64.powi(23)),
+            unit,
             parts,
         })
     }
@@ -153,7 +161,8 @@ impl WaveSums {
     pub fn hits(&self, bound: f64) -> Result<Job<u32>, GpuError> {
         let gpu = &self.job.gpu;
         let kernel = Kernel::new(gpu, "hits", "mark_hits", &source())?;
-        let level = gpu.filled("bound", &[((bound + self.rounding) as f32).next_up()])?;
+        let level = (bound + self.rounding) / self.unit;
+        let level = gpu.filled("bound", &[(level as f32).next_up()])?;
         let (mut steps, mut masks) = (self.job.steps.clone(), Vec::new());
         for part in &self.parts {
             let words = part.rows.div_ceil(32);
