@@ -4,8 +4,6 @@
 
 #[path = "../benches/paper_figures/crossing.rs"]
 mod crossing;
-#[path = "../benches/paper_figures/minkowski.rs"]
-mod minkowski;
 #[path = "../benches/paper_figures/scene.rs"]
 #[allow(dead_code)]
 mod scene;
@@ -15,10 +13,10 @@ use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::grid::Grid;
 use knotdock::geometry::gap::spectrum::{self, Body, FrequencyBox, Kernel, exact};
 use knotdock::geometry::gap::{lifted, ways};
+use knotdock_scoring::minkowski::{self, Knot, Node, gap_of_balls, gap_of_nodes};
 use knotdock_scoring::transform::truncation::{Selection, rms_left_out};
 use knotdock_scoring::truncated::RotationSpectrum;
 use knotdock_structures::mesh::{Mesh, from_triangles};
-use minkowski::{Knot, Node, gap_of_balls, gap_of_nodes};
 use nalgebra::Vector3;
 use num_complex::Complex64;
 use scene::{Scene, sampled};
@@ -49,7 +47,7 @@ fn correlated(per_axis: usize) -> Correlated {
     let kernel = Kernel::new(20.0).unwrap();
     let mut buffers = grid.buffers();
     let spectra = [body(40, 0.0), body(12, 0.5)].map(|body| {
-        grid.rasterise(&body, &kernel, &mut buffers);
+        grid.rasterise(&body.knots(), &kernel.bump, &mut buffers);
         grid.forward(&mut buffers);
         buffers.spectrum.clone()
     });
@@ -122,7 +120,9 @@ fn the_transforms_give_the_sum_over_the_grid() {
     let kernel = Kernel::new(20.0).unwrap();
     let mut buffers = whole.grid.buffers();
     let sampled = [body(40, 0.0), body(12, 0.5)].map(|body| {
-        whole.grid.rasterise(&body, &kernel, &mut buffers);
+        whole
+            .grid
+            .rasterise(&body.knots(), &kernel.bump, &mut buffers);
         buffers.grid.clone()
     });
     let cell = (EDGE / per_axis as f64).powi(3);
@@ -235,7 +235,7 @@ fn every_way_gives_the_same_spectrum() {
     }
     let grid = Grid::new(64, EDGE);
     let mut buffers = grid.buffers();
-    grid.rasterise(&body, &kernel, &mut buffers);
+    grid.rasterise(&body.knots(), &kernel.bump, &mut buffers);
     grid.forward(&mut buffers);
     let rastered: Vec<Complex64> = (0..half)
         .map(|place| grid.transform_at(&buffers.spectrum, frequencies.frequency(place)))

@@ -8,6 +8,7 @@
 mod search;
 
 use knotdock_scoring::gpu::{ADAPTER_VARIABLE, Ceilings, GpuDevice};
+use knotdock_scoring::processor::Cost;
 use serde_json::{Value, json};
 use std::error::Error;
 use std::time::Instant;
@@ -22,11 +23,11 @@ struct Card {
 }
 
 impl Card {
-    /// Seconds, and shares of the adapter's bandwidth and arithmetic, of what moves these bytes and does these operations.
-    fn shares(&self, seconds: f64, bytes: f64, flops: f64) -> [f64; 2] {
+    /// Shares of the adapter's bandwidth and arithmetic that a work of these seconds has.
+    fn shares(&self, seconds: f64, cost: Cost) -> [f64; 2] {
         [
-            bytes / seconds / self.ceilings.bytes,
-            flops / seconds / self.ceilings.flops,
+            cost.bytes / seconds / self.ceilings.bytes,
+            cost.operations / seconds / self.ceilings.flops,
         ]
     }
 }

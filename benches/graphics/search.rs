@@ -82,20 +82,20 @@ pub fn measure(
     println!("|---|---|---|---|---|---|---|");
     let mut of_stages = Vec::new();
     for (rank, stage) in stages {
-        let [copies, arithmetic] = card.shares(stage.seconds, stage.bytes, stage.flops);
+        let [copies, arithmetic] = card.shares(stage.seconds, stage.cost);
         println!(
             "| {rank} | {} | {:.3} | {:.3} | {:.3} | {copies:.2} | {arithmetic:.2} |",
             stage.name,
             1e6 * stage.seconds,
-            1e-6 * stage.bytes,
-            1e-6 * stage.flops
+            1e-6 * stage.cost.bytes,
+            1e-6 * stage.cost.operations
         );
         of_stages.push(json!({
             "components": rank,
             "stage": stage.name,
             "seconds": stage.seconds,
-            "bytes": stage.bytes,
-            "flops": stage.flops,
+            "bytes": stage.cost.bytes,
+            "operations": stage.cost.operations,
         }));
     }
     println!();

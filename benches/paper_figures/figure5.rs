@@ -1,8 +1,8 @@
 //! Figure 5: two spherical samples, and their Minkowski sum for two rotations of the second.
 
-use crate::minkowski::{Knot, write};
 use crate::panels::drawn;
 use crate::scene::Scene;
+use knotdock_scoring::minkowski::{Knot, write};
 use nalgebra::{UnitQuaternion, Vector3};
 
 /// Rotations of the peg from its place in the scene, as Euler angles in radians.

@@ -2,17 +2,21 @@
 //!
 //! Both samplings are of one spacing, so that both sums are within the two solids' eps together of the true one.
 
-use crate::minkowski::{Knot, Node, gap_of_balls, gap_of_nodes, write};
+use crate::card::{Card, seconds};
 use crate::report::Figure;
 use crate::scene::Scene;
 use crate::table::{Cell, Table};
 use crate::timing::least;
 use knotdock_cli::plot::chart::{Axis, Colour, Panel, Series, Style};
+use knotdock_scoring::gpu::Job;
+use knotdock_scoring::minkowski::{Knot, Node, gap_of_balls, gap_of_nodes, write};
 
 /// Sums that are written at most, 400 MB of nodes; of more a share is timed and scaled up.
 const MOST_WRITTEN: usize = 1 << 24;
 /// Sums that are streamed at most.
 const MOST_STREAMED: usize = 1 << 28;
+/// Where the streamed sums are used.
+const PLACE: Node = [0.9, 0.1, 0.2];
 /// Table 1's ratios by the paper's own counts, from 2^12 on; at 2^18 it prints 764.5.
 const PAPER_RATIOS: [(u32, f64); 4] = [(12, 23.0), (15, 309.1), (18, 555.1), (21, 3785.5)];
 /// The paper's times at 2^18, in milliseconds: 28 and 48 s of nodes, 104 and 47 ms of balls.
@@ -50,6 +54,8 @@ struct Row {
     epsilon: f64,
     nodes: Sums,
     balls: Sums,
+    /// Seconds of balls on the card, written and streamed.
+    card: [Option<f64>; 2],
 }
 
 impl Sums {
@@ -64,7 +70,7 @@ impl Sums {
             sum.len() as f64
         });
         let streamed = share(first, second.len(), MOST_STREAMED, |first| {
-            gap(first, second, [0.9, 0.1, 0.2])
+            gap(first, second, PLACE)
         });
         Self {
             counts: [first.len(), second.len()],
@@ -99,8 +105,21 @@ fn share<const N: usize>(
 }
 
 impl Row {
-    fn new(pair: &'static str, scene: &Scene, balls: [&[Knot]; 2], nodes: [&[Node]; 2]) -> Self {
+    fn new(
+        pair: &'static str,
+        scene: &Scene,
+        card: Option<&Card>,
+        balls: [&[Knot]; 2],
+        nodes: [&[Node]; 2],
+    ) -> Self {
+        let [a, b] = balls;
         Self {
+            card: [
+                card.and_then(|card| card.measure(|gpu| seconds(&Job::pair_sums(gpu, a, b)?))),
+                card.and_then(|card| {
+                    card.measure(|gpu| seconds(&Job::pair_distances(gpu, a, b, &[PLACE])?))
+                }),
+            ],
             pair,
             per_axis: scene.per_axis,
             epsilon: scene.epsilon(),
@@ -119,7 +138,7 @@ impl Row {
 }
 
 /// The tables and the picture.
-pub fn figure(scenes: &[Scene]) -> Figure {
+pub fn figure(scenes: &[Scene], card: Option<&Card>) -> Figure {
     let mut rows = Vec::new();
     // By pair, then by grid.
     for (pair, name) in PAIRS.map(|(name, _)| name).into_iter().enumerate() {
@@ -132,7 +151,7 @@ pub fn figure(scenes: &[Scene]) -> Figure {
                 _ => (&bunny, 0),
             };
             let nodes = [&scene.nodes[0][..], &scene.nodes[nodes]];
-            rows.push(Row::new(name, scene, [&bunny, second], nodes));
+            rows.push(Row::new(name, scene, card, [&bunny, second], nodes));
         }
     }
     Figure {
@@ -201,6 +220,8 @@ fn costs(rows: &[Row]) -> Table {
             time(row.nodes.streamed),
             time(row.balls.streamed),
             times(row.nodes.streamed, row.balls.streamed),
+            Cell::milliseconds(row.card[0]),
+            Cell::milliseconds(row.card[1]),
         ]
     };
     Table {
@@ -215,6 +236,8 @@ fn costs(rows: &[Row]) -> Table {
             "nodes; streamed (ms)",
             "balls; streamed (ms)",
             "times faster",
+            "balls; written; card (ms)",
+            "balls; streamed; card (ms)",
         ],
         rows: rows.iter().map(row).collect(),
     }

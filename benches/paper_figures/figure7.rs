@@ -2,6 +2,7 @@
 //!
 //! It shows the time of every step, and the error of leaving out the other modes.
 
+use crate::card::{Card, seconds};
 use crate::report::{Figure, colour_of_grid, grid_name};
 use crate::scene::Scene;
 use crate::table::{Cell, Table};
@@ -9,6 +10,7 @@ use crate::timing::{least, timed};
 use crate::whole::{Errors, Whole};
 use knotdock_cli::plot::chart::Colour;
 use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
+use knotdock_scoring::gpu::GapGrid;
 use knotdock_scoring::transform::truncation::{Selection, total};
 
 /// Everything measured at one m'.
@@ -39,7 +41,7 @@ fn row(whole: &Whole, [dominant, low]: &[Selection; 2]) -> Row {
 }
 
 /// The figure's tables and picture, from one correlation a grid size.
-pub fn figure(correlations: &[(&Scene, &Whole)]) -> Figure {
+pub fn figure(correlations: &[(&Scene, &Whole)], card: Option<&Card>) -> Figure {
     let mut rows = Vec::new();
     for (_, whole) in correlations {
         let (seconds, of_grid) = timed(|| {
@@ -54,13 +56,26 @@ pub fn figure(correlations: &[(&Scene, &Whole)]) -> Figure {
     }
     Figure {
         name: "fig7",
-        tables: vec![("steps", steps(correlations)), ("truncated", table(&rows))],
+        tables: vec![
+            ("steps", steps(correlations, card)),
+            ("truncated", table(&rows)),
+        ],
         panels: panels(correlations, &rows),
         columns: 3,
     }
 }
 
-fn steps(correlations: &[(&Scene, &Whole)]) -> Table {
+/// Seconds on the card of rasterising, and of transforms and product.
+fn on_card(card: &Card, scene: &Scene, whole: &Whole) -> Option<[f64; 2]> {
+    let balls = [&scene.bunny, &scene.peg].map(|body| body.knots());
+    let grid = whole.grid();
+    card.measure(|gpu| {
+        let gap = GapGrid::new(gpu, [&balls[0], &balls[1]], grid.per_axis, grid.edge)?;
+        Ok([seconds(&gap.rasterise)?, seconds(&gap.correlate)?])
+    })
+}
+
+fn steps(correlations: &[(&Scene, &Whole)], card: Option<&Card>) -> Table {
     let milliseconds = |seconds: f64| Cell::Number(1e3 * seconds);
     Table {
         header: vec![
@@ -73,10 +88,13 @@ fn steps(correlations: &[(&Scene, &Whole)]) -> Table {
             "inverse FFT (ms)",
             "transforms and product (ms)",
             "pairwise sums of balls (ms)",
+            "rasterise both; card (ms)",
+            "transforms and product; card (ms)",
         ],
         rows: correlations
             .iter()
             .map(|(scene, whole)| {
+                let on_card = card.and_then(|card| on_card(card, scene, whole));
                 vec![
                     Cell::Count(whole.values().len()),
                     Cell::Text(scene.bunny.radii.len().to_string()),
@@ -87,6 +105,8 @@ fn steps(correlations: &[(&Scene, &Whole)]) -> Table {
                     milliseconds(whole.inverse),
                     milliseconds(whole.total()),
                     milliseconds(whole.pairwise),
+                    Cell::milliseconds(on_card.map(|[rasterising, _]| rasterising)),
+                    Cell::milliseconds(on_card.map(|[_, correlating]| correlating)),
                 ]
             })
             .collect(),

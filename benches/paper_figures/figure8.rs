@@ -3,6 +3,7 @@
 //! One way is a rasterised grid of m points and its FFT. The others start from the balls themselves: the direct 4D sum
 //! (NDFT), the 4D fast transform, and both after compressing the radius.
 
+use crate::card::Card;
 use crate::report::{Figure, grid_name};
 use crate::scene::Scene;
 use crate::table::{Cell, Table};
@@ -31,10 +32,10 @@ const COLOURS: [Colour; 4] = [
 ///
 /// # Errors
 /// If a transform cannot be planned.
-pub fn figure(scenes: &[(&Scene, &Kernel)]) -> Result<Figure, Box<dyn Error>> {
+pub fn figure(scenes: &[(&Scene, &Kernel)], card: Option<&Card>) -> Result<Figure, Box<dyn Error>> {
     let mut grids = Vec::new();
     for (scene, kernel) in scenes {
-        let (seconds, of_grid) = timed(|| measure(scene, kernel));
+        let (seconds, of_grid) = timed(|| measure(scene, kernel, card));
         eprintln!(
             "figure 8: {} points per axis, {seconds:.1} s",
             scene.per_axis
@@ -102,6 +103,7 @@ fn times(grids: &[OfGrid]) -> Table {
         "its error",
         "lifted modes",
         "4D NDFT (ms)",
+        "4D NDFT; card (ms)",
         "4D NFFT (ms)",
         "its error",
         "rank",
@@ -134,6 +136,7 @@ fn times(grids: &[OfGrid]) -> Table {
                 Cell::Share(row.raster_error),
                 Cell::Text(row.lifted_modes.to_string()),
                 time(literal),
+                row.card.as_ref().map_or(Cell::None, time),
                 time(lifted),
                 Cell::Share(lifted.error),
                 Cell::Text(row.rank.to_string()),

@@ -2,6 +2,7 @@
 //!
 //! A new rotation needs a new spectrum of the peg's balls before that; its time is shown as well.
 
+use crate::card::{Card, seconds};
 use crate::report::{Figure, colour_of_grid, grid_name};
 use crate::scene::Scene;
 use crate::table::{Cell, Table};
@@ -11,6 +12,7 @@ use knotdock::geometry::gap::expansion::{Expansion, Task};
 use knotdock::geometry::gap::spectrum::{FrequencyBox, Kernel};
 use knotdock::geometry::gap::ways::{Points, fast, planned};
 use knotdock_cli::plot::chart::{Axis, Panel, Series, Style};
+use knotdock_scoring::gpu::WaveSums;
 use knotdock_scoring::transform::truncation::Selection;
 use knotdock_scoring::truncated::RotationSpectrum;
 use nalgebra::Vector3;
@@ -20,6 +22,8 @@ use std::error::Error;
 const PLACES: usize = 200;
 /// Configurations that are timed in one go: more where each takes less.
 const WORK: usize = 200_000;
+/// Configurations that the card computes together.
+const TOGETHER: usize = 1_000_000;
 /// Error of a new rotation's spectrum, as a share of its value at frequency zero.
 const TOLERANCE: f64 = 1e-3;
 /// Modes below which the paper computes a configuration in less than a millisecond.
@@ -33,6 +37,8 @@ struct Row {
     turning: f64,
     rms: f64,
     worst: f64,
+    /// Seconds of one configuration of many on the card.
+    card: Option<f64>,
 }
 
 /// The function of the selected modes, ready for one configuration at a time.
@@ -87,8 +93,34 @@ fn turning(scene: &Scene, kernel: &Kernel, power: u32) -> Result<f64, Box<dyn Er
     Ok(least(|| fast(&points, &mut plan)))
 }
 
+/// Seconds of one configuration of a million on the card, or of fewer if there are many modes.
+fn on_card(card: &Card, whole: &Whole, selection: &Selection) -> Option<f64> {
+    let grid = whole.grid();
+    let (mut frequencies, mut values) = (Vec::new(), Vec::new());
+    for column in &grid.modes.columns {
+        for (index, kx) in (-column.kx_max..=column.kx_max).enumerate() {
+            let mode = column.start + index;
+            if selection.keeps(mode) {
+                // The conjugates are not held.
+                let factor = if column.kz == 0 { 1.0 } else { 2.0 };
+                frequencies.push([kx, column.ky, column.kz]);
+                values.push(factor * grid.mode(whole.product(), mode));
+            }
+        }
+    }
+    let count = TOGETHER.min(card.most_sums(values.len()));
+    // Spread over the cube by steps without a common measure.
+    let places: Vec<[f64; 3]> = (0..count)
+        .map(|index| [0.819_173, 0.671_044, 0.549_700].map(|step| (index as f64 * step).fract()))
+        .collect();
+    let seconds =
+        card.measure(|gpu| seconds(&WaveSums::adjoint(gpu, &frequencies, &values, &places)?.job))?;
+    Some(seconds / count as f64)
+}
+
 fn row(
     whole: &Whole,
+    card: Option<&Card>,
     power: u32,
     selection: &Selection,
     places: &[(Vector3<f64>, f64)],
@@ -116,6 +148,7 @@ fn row(
         turning,
         rms: (squares / errors.len() as f64).sqrt(),
         worst: errors.iter().copied().fold(0.0, f64::max),
+        card: card.and_then(|card| on_card(card, whole, selection)),
     }
 }
 
@@ -123,13 +156,16 @@ fn row(
 ///
 /// # Errors
 /// If a transform cannot be planned.
-pub fn figure(correlations: &[(&Scene, &Kernel, &Whole)]) -> Result<Figure, Box<dyn Error>> {
+pub fn figure(
+    correlations: &[(&Scene, &Kernel, &Whole)],
+    card: Option<&Card>,
+) -> Result<Figure, Box<dyn Error>> {
     let mut rows = Vec::new();
     for (scene, kernel, whole) in correlations {
         let places = places(whole, PLACES);
         for (power, [dominant, _]) in whole.selections() {
             let turning = turning(scene, kernel, power)?;
-            rows.push(row(whole, power, &dominant, &places, turning));
+            rows.push(row(whole, card, power, &dominant, &places, turning));
         }
     }
     let wholes: Vec<&Whole> = correlations.iter().map(|(_, _, whole)| *whole).collect();
@@ -152,6 +188,7 @@ fn table(rows: &[Row]) -> Table {
             "rms error",
             "largest error",
             "new rotation (ms)",
+            "one of a million; card (ns)",
         ],
         rows: rows
             .iter()
@@ -165,6 +202,7 @@ fn table(rows: &[Row]) -> Table {
                     Cell::Share(row.rms),
                     Cell::Share(row.worst),
                     Cell::Number(1e3 * row.turning),
+                    row.card.map_or(Cell::None, |card| Cell::Number(1e9 * card)),
                 ]
             })
             .collect(),

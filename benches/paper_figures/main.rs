@@ -17,8 +17,10 @@
 //! - Figure 9 ([`figure9`]): one configuration from m' modes.
 //! - Figure 11 ([`figure11`]): the bunny's balls by grid and protrusion factor.
 //!
-//! Everything timed runs on one thread in double precision; times are processor time, the least of several runs.
+//! Everything timed runs on one thread in double precision; times are processor time, the least of several runs. Columns
+//! of the card are wall time on a graphics processor, in single precision ([`card`]).
 
+mod card;
 mod crossing;
 #[path = "../../structures/examples/docking_parts/mod.rs"]
 #[allow(dead_code)] // Only the peg is used.
@@ -29,7 +31,6 @@ mod figure6;
 mod figure7;
 mod figure8;
 mod figure9;
-mod minkowski;
 mod panels;
 mod report;
 mod scene;
@@ -39,6 +40,7 @@ mod timing;
 mod ways_measured;
 mod whole;
 
+use card::Card;
 use clap::Parser;
 use knotdock::geometry::gap::spectrum::Kernel;
 use scene::Scene;
@@ -93,6 +95,8 @@ fn main() -> Result<(), Box<dyn Error>> {
         );
     }
     println!();
+    let card = Card::open();
+    let card = card.as_ref();
     let images = options.images.as_deref();
     if options.figures.contains(&5) {
         // Of the largest grid but two, whose balls the eye can still resolve.
@@ -101,7 +105,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         }
     }
     if options.figures.contains(&6) {
-        figure6::figure(&scenes).write(&options.out, images)?;
+        figure6::figure(&scenes, card).write(&options.out, images)?;
     }
     if options.figures.contains(&11) {
         let per_axis: Vec<usize> = scenes.iter().map(|scene| scene.per_axis).collect();
@@ -112,7 +116,10 @@ fn main() -> Result<(), Box<dyn Error>> {
         .iter()
         .any(|figure| (7..=9).contains(figure))
     {
-        correlate(&scenes, &options)?;
+        correlate(&scenes, card, &options)?;
+    }
+    if let Some(card) = card {
+        println!("{}", card.note());
     }
     eprintln!("written to {}", options.out.display());
     Ok(())
@@ -128,7 +135,11 @@ fn write_picture(name: &str, picture: &str, options: &Options) -> io::Result<()>
 }
 
 /// Figures 7, 8 and 9, which share kernels, correlations or both.
-fn correlate(scenes: &[Scene], options: &Options) -> Result<(), Box<dyn Error>> {
+fn correlate(
+    scenes: &[Scene],
+    card: Option<&Card>,
+    options: &Options,
+) -> Result<(), Box<dyn Error>> {
     let images = options.images.as_deref();
     let wanted = |figure| options.figures.contains(&figure);
     let kernels = scenes.iter().map(kernel).collect::<Result<Vec<_>, _>>()?;
@@ -140,7 +151,7 @@ fn correlate(scenes: &[Scene], options: &Options) -> Result<(), Box<dyn Error>> 
             .collect();
         if wanted(7) {
             let correlations: Vec<(&Scene, &Whole)> = scenes.iter().zip(&wholes).collect();
-            figure7::figure(&correlations).write(&options.out, images)?;
+            figure7::figure(&correlations, card).write(&options.out, images)?;
             // Of the largest grid but one, whose points the eye can still resolve.
             if let Some(whole) = wholes.iter().rfind(|whole| whole.grid().per_axis <= 64) {
                 write_picture("fig7_sections", &sections::sections(whole), options)?;
@@ -152,11 +163,11 @@ fn correlate(scenes: &[Scene], options: &Options) -> Result<(), Box<dyn Error>> 
                 .zip(&wholes)
                 .map(|((scene, kernel), whole)| (*scene, *kernel, whole))
                 .collect();
-            figure9::figure(&correlations)?.write(&options.out, images)?;
+            figure9::figure(&correlations, card)?.write(&options.out, images)?;
         }
     }
     if wanted(8) {
-        figure8::figure(&pairs)?.write(&options.out, images)?;
+        figure8::figure(&pairs, card)?.write(&options.out, images)?;
     }
     Ok(())
 }

@@ -1,7 +1,7 @@
 //! Panels of balls, to one scale.
 
-use crate::minkowski::Knot;
 use knotdock_cli::plot::svg::Svg;
+use knotdock_scoring::minkowski::Knot;
 
 /// Edge of a panel, in SVG units; also the number of cells along it in which a ball has to be seen.
 const PANEL: f64 = 330.0;

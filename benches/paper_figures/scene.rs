@@ -6,8 +6,8 @@
 //! its faces lies along the grid.
 
 use super::docking_parts::peg_and_hole;
-use super::minkowski::Node;
 use knotdock::geometry::gap::spectrum::Body;
+use knotdock_scoring::minkowski::Node;
 use knotdock_structures::mesh::{Mesh, Solid, from_triangles, read};
 use knotdock_structures::sampling::decomposition::DecompositionOptions;
 use knotdock_structures::sampling::{Method, SetName, knots, sample};

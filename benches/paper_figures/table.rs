@@ -29,6 +29,11 @@ pub struct Table {
 }
 
 impl Cell {
+    /// Milliseconds of seconds, if they were measured.
+    pub fn milliseconds(seconds: Option<f64>) -> Self {
+        seconds.map_or(Self::None, |seconds| Self::Number(1e3 * seconds))
+    }
+
     fn markdown(&self) -> String {
         match self {
             Self::Text(text) => text.clone(),

@@ -1,5 +1,6 @@
 //! A body's spectrum at its m' lowest frequencies: what each way takes, with no larger an error than the grid's.
 
+use crate::card::{Card, seconds};
 use crate::crossing::crossing;
 use crate::scene::Scene;
 use crate::timing::least;
@@ -8,6 +9,7 @@ use knotdock::geometry::gap::grid::Grid;
 use knotdock::geometry::gap::lifted;
 use knotdock::geometry::gap::spectrum::{FrequencyBox, Kernel, exact};
 use knotdock::geometry::gap::ways::{Points, direct, fast, planned};
+use knotdock_scoring::gpu::WaveSums;
 use knotdock_scoring::transform::direct::forward as direct_sums;
 use num_complex::Complex64;
 use std::error::Error;
@@ -45,6 +47,8 @@ pub struct Row {
     pub raster_error: f64,
     /// 4D NDFT, 4D NFFT, NDFT and NFFT with the radius compressed.
     pub ways: [Measured; 4],
+    /// The 4D sums on the card, without the product.
+    pub card: Option<Measured>,
 }
 
 /// Everything measured at one grid size.
@@ -92,13 +96,17 @@ fn error(reference: &[Complex64], value: impl Fn(usize) -> Complex64) -> f64 {
 ///
 /// # Errors
 /// If a transform cannot be planned.
-pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>> {
+pub fn measure(
+    scene: &Scene,
+    kernel: &Kernel,
+    card: Option<&Card>,
+) -> Result<OfGrid, Box<dyn Error>> {
     let body = &scene.bunny;
     let grid = Grid::new(scene.per_axis, scene.edge);
     let mut buffers = grid.buffers();
-    let rasterising = least(|| grid.rasterise(body, kernel, &mut buffers));
+    let rasterising = least(|| grid.rasterise(&body.knots(), &kernel.bump, &mut buffers));
     let forward = least(|| grid.forward(&mut buffers));
-    grid.rasterise(body, kernel, &mut buffers);
+    grid.rasterise(&body.knots(), &kernel.bump, &mut buffers);
     grid.forward(&mut buffers);
     let mut rows = Vec::new();
     for power in 6..=scene.per_axis.pow(3).ilog2() {
@@ -135,6 +143,8 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
         // The direct sums differ from the fast ones by the transform's tolerance alone; if they take too long a share
         // is timed.
         let literal = by_direct_sums(&points, &reference, &places);
+        let heights: Vec<f64> = body.radii.iter().map(|radius| radius / period).collect();
+        let card = card.and_then(|card| on_card(card, &points, &heights));
         let compressed = Expansion::compressed(&task);
         let points = Points::new(body, scene.edge, frequencies, &compressed);
         let mut plan = planned(&points, tolerance)?;
@@ -151,6 +161,7 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
                 by_direct_sums(&points, &reference, &places),
                 ours,
             ],
+            card,
         });
     }
     Ok(OfGrid {
@@ -159,6 +170,29 @@ pub fn measure(scene: &Scene, kernel: &Kernel) -> Result<OfGrid, Box<dyn Error>>
         rasterising,
         forward,
         rows,
+    })
+}
+
+/// The direct 4D sums on the card, of all frequencies or the first of them.
+fn on_card(card: &Card, points: &Points, heights: &[f64]) -> Option<Measured> {
+    let lifted: Vec<[f64; 4]> = (points.centers.iter().zip(heights))
+        .map(|([x, y, z], r)| [*x, *y, *z, *r])
+        .collect();
+    let (held, rank) = (points.frequencies.count() / 2, points.expansion.rank());
+    let timed = (held * rank).min(card.most_sums(lifted.len()));
+    let frequencies: Vec<[i32; 4]> = (0..timed)
+        .map(|index| {
+            let [x, y, z] = points.frequencies.frequency(index / rank);
+            [x, y, z, (index % rank) as i32 - (rank / 2) as i32]
+        })
+        .collect();
+    let weights = vec![Complex64::new(1.0, 0.0); lifted.len()];
+    let seconds =
+        card.measure(|gpu| seconds(&WaveSums::forward(gpu, &lifted, &weights, &frequencies)?.job))?;
+    Some(Measured {
+        seconds: seconds * (held * rank) as f64 / timed as f64,
+        error: f64::NAN,
+        scaled: timed < held * rank,
     })
 }
 

@@ -53,10 +53,10 @@ impl Whole {
         let mut rasterising = 0.0;
         let mut forward = 0.0;
         let spectra = [&scene.bunny, &scene.peg].map(|body| {
-            rasterising += least(|| grid.rasterise(body, kernel, &mut buffers));
+            rasterising += least(|| grid.rasterise(&body.knots(), &kernel.bump, &mut buffers));
             // The transform takes the same time whatever it is given.
             forward += least(|| grid.forward(&mut buffers));
-            grid.rasterise(body, kernel, &mut buffers);
+            grid.rasterise(&body.knots(), &kernel.bump, &mut buffers);
             grid.forward(&mut buffers);
             buffers.spectrum.clone()
         });

@@ -39,6 +39,8 @@
 //! | `gpu` | graphics processors, with the feature of this name |
 //! | [`truncated`] | the correlation at one pose from chosen modes |
 //! | [`overlap`] | overlap energy of weighted balls at one pose: force, torque, certified hits |
+//! | [`minkowski`], [`gap_grid`] | Minkowski sums of balls by pairs; the gap function on a uniform grid |
+//! | [`processor`] | these, and sums and transforms of knots, on the CPU or a graphics processor |
 //! | [`potential_grid`] | score and gradient between the voxels |
 //! | [`se3`], [`so3`], [`peaks`] | poses, rotation sets, the best voxels of a grid |
 //! | [`grid_turn`] | turns that map a grid onto itself |
@@ -52,16 +54,19 @@ mod distance_floors;
 pub mod engine;
 pub mod exact;
 pub mod exact_sum;
+pub mod gap_grid;
 #[cfg(feature = "gpu")]
 pub mod gpu;
 pub mod grid_turn;
 pub mod kernel;
 mod lanes;
 pub mod lifted_axis;
+pub mod minkowski;
 pub mod overlap;
 pub mod peaks;
 pub mod potential_grid;
 mod precision;
+pub mod processor;
 pub mod quantity;
 mod rigid_move;
 pub mod se3;

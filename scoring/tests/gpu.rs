@@ -2,7 +2,7 @@
 //! its peaks.
 
 #[path = "scene/adapter.rs"]
-mod adapter;
+pub mod adapter;
 
 use crate::scene::{Numbers, Pair, RADII, askew_cloud, cloud, engine_options, some_rotation};
 use adapter::adapter;

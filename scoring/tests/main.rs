@@ -11,6 +11,8 @@ mod gpu;
 mod identities;
 mod nfft;
 mod potential_grid;
+#[cfg(feature = "gpu")]
+mod processor;
 mod skin_weights;
 mod truncated;
 mod uniform_grid;

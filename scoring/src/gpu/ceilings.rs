@@ -1,9 +1,9 @@
 //! What an adapter does at the most, measured: bytes copied and multiplications added per second. Shaders are judged by
 //! their shares of both.
 
+use super::kernel::Kernel;
 use super::{GpuDevice, GpuError};
 use std::time::Instant;
-use wgpu::util::DeviceExt;
 
 /// The most that an adapter does.
 #[derive(Clone, Copy, Debug)]
@@ -37,43 +37,17 @@ impl Ceilings {
         };
         let from = buffer(wgpu::BufferUsages::COPY_SRC);
         let to = buffer(wgpu::BufferUsages::COPY_DST);
-        let copying = best_of(gpu, |encoder| {
+        let copying = best_of(|| {
+            let descriptor = wgpu::CommandEncoderDescriptor::default();
+            let mut encoder = gpu.device.create_command_encoder(&descriptor);
             encoder.copy_buffer_to_buffer(&from, 0, &to, 0, bytes);
+            gpu.wait(gpu.queue.submit([encoder.finish()]))
         })?;
         let groups = threads.div_ceil(WIDTH);
-        let results = gpu
-            .device
-            .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                label: Some("chains"),
-                contents: bytemuck::cast_slice(&vec![1f32; groups * WIDTH]),
-                usage: wgpu::BufferUsages::STORAGE,
-            });
-        let module = gpu.shader("chains", chains());
-        let pipeline = gpu
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some("chains"),
-                layout: None,
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: wgpu::PipelineCompilationOptions::default(),
-                cache: None,
-            });
-        gpu.check()?;
-        let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some("chains"),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &[wgpu::BindGroupEntry {
-                binding: 0,
-                resource: results.as_entire_binding(),
-            }],
-        });
-        let adding = best_of(gpu, |encoder| {
-            let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
-            pass.set_pipeline(&pipeline);
-            pass.set_bind_group(0, &bindings, &[]);
-            pass.dispatch_workgroups(groups as u32, 1, 1);
-        })?;
+        let results = gpu.filled("chains", &vec![1f32; groups * WIDTH])?;
+        let kernel = Kernel::new(gpu, "chains", "main", &chains())?;
+        let step = kernel.step(gpu, &[&results], [groups, 1, 1])?;
+        let adding = best_of(|| gpu.run(&[], std::slice::from_ref(&step)))?;
         Ok(Self {
             bytes: 2.0 * bytes as f64 / copying,
             flops: (2 * CHAINS * ROUNDS * groups * WIDTH) as f64 / adding,
@@ -102,17 +76,13 @@ fn chains() -> String {
 }
 
 /// Seconds of the fastest of a few runs, after one that is not counted.
-fn best_of(gpu: &GpuDevice, record: impl Fn(&mut wgpu::CommandEncoder)) -> Result<f64, GpuError> {
+fn best_of(mut run: impl FnMut() -> Result<(), GpuError>) -> Result<f64, GpuError> {
+    run()?;
     let mut least = f64::INFINITY;
-    for run in 0..6 {
-        let descriptor = wgpu::CommandEncoderDescriptor::default();
-        let mut encoder = gpu.device.create_command_encoder(&descriptor);
-        record(&mut encoder);
+    for _ in 0..5 {
         let start = Instant::now();
-        gpu.wait(gpu.queue.submit([encoder.finish()]))?;
-        if run > 0 {
-            least = least.min(start.elapsed().as_secs_f64());
-        }
+        run()?;
+        least = least.min(start.elapsed().as_secs_f64());
     }
     Ok(least)
 }

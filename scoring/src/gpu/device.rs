@@ -22,13 +22,16 @@ pub enum GpuError {
         found: Vec<String>,
     },
     /// The plan asks for more than the adapter has.
-    #[error("{adapter} is too small for this grid: {what}")]
+    #[error("{adapter} is too small: {what}")]
     TooSmall {
         /// The adapter's name.
         adapter: String,
         /// The missing feature or limit.
         what: String,
     },
+    /// Numbers that no computation takes.
+    #[error("{0}")]
+    Input(String),
     /// The driver reported an error.
     #[error("{adapter}: {message}")]
     Driver {
@@ -58,6 +61,8 @@ fn joined(found: &[String]) -> String {
 pub struct GpuDevice {
     pub(crate) device: wgpu::Device,
     pub(crate) queue: wgpu::Queue,
+    /// Bytes that one buffer may have.
+    pub(crate) binding_limit: usize,
     info: wgpu::AdapterInfo,
     /// Whether shaders test each index.
     is_checked: bool,
@@ -126,7 +131,10 @@ impl GpuDevice {
                 note(&noted, message);
             }
         });
+        let limits = device.limits();
+        let longest = (limits.max_buffer_size).min(limits.max_storage_buffer_binding_size);
         Ok(Self {
+            binding_limit: usize::try_from(longest).unwrap_or(usize::MAX),
             device,
             queue,
             info,
@@ -136,7 +144,7 @@ impl GpuDevice {
     }
 
     /// Compiles a shader. Sizes in it must be those of its buffers.
-    pub(crate) fn shader(&self, name: &str, source: String) -> wgpu::ShaderModule {
+    pub(super) fn shader(&self, name: &str, source: &str) -> wgpu::ShaderModule {
         let descriptor = wgpu::ShaderModuleDescriptor {
             label: Some(name),
             source: wgpu::ShaderSource::Wgsl(source.into()),
@@ -144,11 +152,19 @@ impl GpuDevice {
         if self.is_checked {
             return self.device.create_shader_module(descriptor);
         }
-        // SAFETY: shaders here index by the sizes that they are compiled for, which made their buffers; their loops end by
-        // the same sizes; and they divide by constants. Tests run all of them with the checks on, to the same bits.
+        // SAFETY: shaders here index by sizes that also made their buffers, their loops end by the same sizes, and they
+        // divide by constants. Tests run all of them with the checks on, to the same bits.
         unsafe {
             self.device
                 .create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
+        }
+    }
+
+    /// The device with buffers of at most `bytes`, for tests of computations that divide theirs.
+    pub fn with_buffers_of(&self, bytes: usize) -> Self {
+        Self {
+            binding_limit: bytes.min(self.binding_limit),
+            ..self.clone()
         }
     }
 
@@ -167,10 +183,13 @@ impl GpuDevice {
         self.info.device_type == wgpu::DeviceType::Cpu
     }
 
-    /// Waits until a submission is done.
-    pub(crate) fn wait(&self, submission: wgpu::SubmissionIndex) -> Result<(), GpuError> {
+    /// Waits until a submission is done, or all are.
+    pub(crate) fn wait(
+        &self,
+        submission: impl Into<Option<wgpu::SubmissionIndex>>,
+    ) -> Result<(), GpuError> {
         let waited = self.device.poll(wgpu::PollType::Wait {
-            submission_index: Some(submission),
+            submission_index: submission.into(),
             timeout: Some(PATIENCE),
         });
         self.check()?;
@@ -188,6 +207,22 @@ impl GpuDevice {
             .unwrap_or_else(PoisonError::into_inner)
             .clone();
         failure.map_or(Ok(()), |message| Err(self.driver(message)))
+    }
+
+    /// Refuses numbers that are not finite.
+    pub(crate) fn finite<const N: usize>(
+        &self,
+        what: &str,
+        all: &[[f64; N]],
+    ) -> Result<(), GpuError> {
+        let finite = |one: &[f64; N]| one.iter().all(|part| part.is_finite());
+        match all.iter().position(|one| !finite(one)) {
+            None => Ok(()),
+            Some(index) => Err(GpuError::Input(format!(
+                "{what} {index} is not finite: {:?}",
+                all[index]
+            ))),
+        }
     }
 
     pub(crate) fn driver(&self, message: String) -> GpuError {

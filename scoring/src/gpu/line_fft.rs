@@ -68,14 +68,9 @@ impl LineFft {
         5.0 * length * length.log2()
     }
 
-    /// exp(+-2 pi i k / length) for k = 0..length, as (re, im); none if one pass does all, so that [`Self::source`] reads
-    /// no table.
+    /// exp(+-2 pi i k / length) for k = 0..length, as (re, im).
     pub fn twiddles(self) -> Vec<[f32; 2]> {
-        let count = match radices(self.length) {
-            Some(passes) if passes.len() > 1 => self.length,
-            _ => 0,
-        };
-        (0..count)
+        (0..self.length)
             .map(|k| {
                 let angle = self.direction.sign() * TAU * k as f64 / self.length as f64;
                 [angle.cos() as f32, angle.sin() as f32]
@@ -105,7 +100,8 @@ impl LineFft {
         let stride = self.stride();
         let mut code = format!(
             "fn at{suffix}(line: u32, k: u32) -> u32 {{ return line * {stride}u + k + k / {BANKS}u; }}\n\
-             fn transform{suffix}(lane: u32) {{\n"
+             fn transform{suffix}(lane: u32) {{\n\
+             _ = &twiddle{suffix}; // A single pass reads no table, which is bound all the same.\n"
         );
         let (mut from, mut to) = ("ping", "pong");
         let mut span = 1;

@@ -55,6 +55,36 @@ fn waves<const D: usize>(point: &[f64; D], modes: [usize; D]) -> Vec<Complex64> 
     waves
 }
 
+/// [`forward`] at one frequency of any list: O(points).
+pub fn at_frequency<const D: usize>(
+    points: &[[f64; D]],
+    weights: &[Complex64],
+    frequency: [i32; D],
+) -> Complex64 {
+    let waves = points.iter().zip(weights);
+    waves
+        .map(|(point, weight)| weight * wave(point, &frequency))
+        .sum()
+}
+
+/// [`adjoint`] at one point, of modes at any frequencies: O(modes).
+pub fn at_point<const D: usize>(
+    frequencies: &[[i32; D]],
+    modes: &[Complex64],
+    point: [f64; D],
+) -> Complex64 {
+    let waves = frequencies.iter().zip(modes);
+    waves.map(|(k, mode)| mode * wave(&point, k).conj()).sum()
+}
+
+/// exp(-2 pi i k.x).
+fn wave<const D: usize>(point: &[f64; D], k: &[i32; D]) -> Complex64 {
+    // Whole periods go first, as above.
+    let axes = point.iter().zip(k);
+    let turns: f64 = axes.map(|(x, &k)| f64::from(k) * (x - x.round())).sum();
+    Complex64::cis(-2.0 * PI * turns)
+}
+
 /// sum_i c_i exp(-2 pi i (w.x_i + eta r_i)) at one lifted frequency (w, eta): O(knots).
 ///
 /// Weights are real, those of knots, or complex, those of the affinity function.

@@ -15,7 +15,7 @@
 //! Lengths are relative to the middle of A; B is turned before and about its own middle.
 
 pub mod expansion;
-pub mod grid;
+pub use knotdock_scoring::gap_grid as grid;
 pub mod lifted;
 pub mod spectrum;
 pub mod ways;
@@ -241,7 +241,8 @@ impl Scene {
     fn rasterised(&self) -> [Vec<Complex64>; 2] {
         let mut buffers = self.grid.buffers();
         self.bodies.each_ref().map(|body| {
-            self.grid.rasterise(body, &self.kernel, &mut buffers);
+            self.grid
+                .rasterise(&body.knots(), &self.kernel.bump, &mut buffers);
             self.grid.forward(&mut buffers);
             buffers.spectrum.clone()
         })

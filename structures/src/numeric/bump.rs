@@ -17,6 +17,13 @@ pub struct Bump {
 #[error("alpha is {0}; the bump function needs an exponent above zero (infinity is allowed)")]
 pub struct AlphaError(pub f64);
 
+impl Default for Bump {
+    /// B&I's choice, alpha = 2.
+    fn default() -> Self {
+        Self { alpha: 2.0 }
+    }
+}
+
 impl Bump {
     /// The bump function psi_alpha.
     ///

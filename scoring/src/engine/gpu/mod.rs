@@ -15,6 +15,7 @@ use super::cpu::{CpuEngine, Transforms};
 use crate::gpu::{GpuDevice, GpuError};
 use crate::grid_turn::GridTurn;
 use crate::precision::of_precision;
+use crate::processor::Cost;
 use crate::transform::Real;
 use buffers::{Batch, Buffers, Sizes};
 use nalgebra::UnitQuaternion;
@@ -65,10 +66,8 @@ pub struct StageCost {
     pub name: &'static str,
     /// Time.
     pub seconds: f64,
-    /// Bytes that pass between it and the card's memory, each value read once and written once.
-    pub bytes: f64,
-    /// Floating-point operations; a transform of n points counts 5 n log2 n.
-    pub flops: f64,
+    /// Each value is read once and written once; a transform of n points counts 5 n log2 n operations.
+    pub cost: Cost,
 }
 
 /// An image of a batch: which turn of all, and which turn of the grid.
@@ -153,8 +152,8 @@ impl GpuEngine {
         if all.is_empty() {
             return Ok(Vec::new());
         }
-        let bytes = (8 * self.sizes.peaks * all.len()) as u64;
-        let results = self.readable(bytes);
+        let bytes = 8 * self.sizes.peaks * all.len();
+        let results = self.gpu.readable(bytes);
         let mut under_way: VecDeque<(wgpu::SubmissionIndex, usize)> = VecDeque::new();
         let mut at = 0;
         for images in self.batches(&all) {
@@ -174,7 +173,9 @@ impl GpuEngine {
             self.gpu.wait(submission)?;
             done(count);
         }
-        let records: Vec<[u32; 2]> = self.read(&results)?;
+        let records: Vec<[u32; 2]> = self
+            .gpu
+            .read_mapped(&results, |bytes| bytemuck::cast_slice(bytes).to_vec())?;
         let least = self.sizes.least_peaks();
         let mut peaks = Vec::with_capacity(records.len());
         for (records, image) in records.chunks_exact(self.sizes.peaks).zip(&all) {
@@ -215,13 +216,13 @@ impl GpuEngine {
             rotation: *rotation,
             wanted,
         };
-        let mut encoder = self.encode(&[turn], &[Image { turn: 0, image }], self.stages.len() - 1);
-        let bytes = 4 * self.sizes.grid.iter().product::<usize>() as u64;
-        let results = self.readable(bytes);
-        encoder.copy_buffer_to_buffer(&self.buffers.grid, 0, &results, 0, bytes);
+        let encoder = self.encode(&[turn], &[Image { turn: 0, image }], self.stages.len() - 1);
         let submission = self.gpu.queue.submit([encoder.finish()]);
         self.gpu.wait(submission)?;
-        self.read(&results)
+        let bytes = 4 * self.sizes.grid.iter().product::<usize>();
+        self.gpu.read(&self.buffers.grid, bytes, |bytes| {
+            bytemuck::cast_slice(bytes).to_vec()
+        })
     }
 
     /// What each stage takes and does, of a full batch, divided by its images.
@@ -262,12 +263,11 @@ impl GpuEngine {
                 self.gpu.wait(self.gpu.queue.submit([encoder.finish()]))?;
                 least = least.min(start.elapsed().as_secs_f64());
             }
-            let (name, work) = self.stages.of(stage);
+            let (name, cost) = self.stages.of(stage);
             costs.push(StageCost {
                 name,
                 seconds: least / images.len() as f64,
-                bytes: work.bytes,
-                flops: work.flops,
+                cost,
             });
         }
         Ok(costs)
@@ -327,34 +327,5 @@ impl GpuEngine {
         self.stages
             .record(&mut encoder, &self.sizes, counts, 0..stages);
         encoder
-    }
-
-    fn readable(&self, bytes: u64) -> wgpu::Buffer {
-        self.gpu.device.create_buffer(&wgpu::BufferDescriptor {
-            label: Some("results"),
-            size: bytes,
-            usage: wgpu::BufferUsages::MAP_READ | wgpu::BufferUsages::COPY_DST,
-            mapped_at_creation: false,
-        })
-    }
-
-    /// Contents of a buffer once everything submitted is done.
-    fn read<T: bytemuck::Pod>(&self, buffer: &wgpu::Buffer) -> Result<Vec<T>, GpuError> {
-        let (sender, mapped) = std::sync::mpsc::channel();
-        buffer.map_async(wgpu::MapMode::Read, .., move |result| {
-            // The receiver lives until it has heard.
-            let _ = sender.send(result);
-        });
-        let waited = self.gpu.device.poll(wgpu::PollType::wait_indefinitely());
-        self.gpu.check()?;
-        waited.map_err(|error| self.gpu.driver(error.to_string()))?;
-        match mapped.recv() {
-            Ok(Ok(())) => {}
-            _ => return Err(self.gpu.driver("results could not be read back".into())),
-        }
-        let view = buffer
-            .get_mapped_range(..)
-            .map_err(|error| self.gpu.driver(error.to_string()))?;
-        Ok(bytemuck::cast_slice(&view).to_vec())
     }
 }

@@ -1,33 +1,23 @@
 //! The stages of a batch: what each computes, on which buffers, in how many workgroups.
 
 use super::buffers::{Buffers, Sizes};
+use crate::gpu::kernel::{Kernel, MAX_GROUPS, Step, constants};
 use crate::gpu::line_fft::{Direction, LineFft, WIDTH};
 use crate::gpu::{GpuDevice, GpuError};
+use crate::processor::Cost;
 use std::ops::Range;
-use wgpu::util::DeviceExt;
 
-/// Most workgroups along one axis of a dispatch, of any adapter.
-const MAX_GROUPS: usize = 65_535;
 /// Most lines that a workgroup transforms together: beyond, a row of them is longer than a memory transaction.
 const MAX_LINES: usize = 16;
-
-/// What a stage does per turn or per image: bytes that pass between it and the card's memory, each value read and written
-/// once, and floating-point operations.
-#[derive(Clone, Copy, Debug, Default)]
-pub(super) struct Work {
-    pub bytes: f64,
-    pub flops: f64,
-}
 
 /// A compiled stage with its buffers.
 struct Stage {
     name: &'static str,
-    pipeline: wgpu::ComputePipeline,
-    bindings: wgpu::BindGroup,
+    step: Step,
     /// Workgroups for a number of turns and images.
     groups: fn(&Sizes, &Lines, usize, usize) -> [usize; 3],
-    /// Of each image, a turn's share counted.
-    work: Work,
+    /// For each image, a turn's share counted.
+    cost: Cost,
 }
 
 /// Lines that a workgroup of each transform takes.
@@ -54,7 +44,8 @@ struct Recipe<'a> {
     transforms: Vec<(&'static str, LineFft)>,
     buffers: Vec<&'a wgpu::Buffer>,
     groups: fn(&Sizes, &Lines, usize, usize) -> [usize; 3],
-    work: Work,
+    /// For each turn, or for each image. Each value is read once and written once.
+    cost: Cost,
 }
 
 impl Stages {
@@ -65,8 +56,8 @@ impl Stages {
         let forward = forward_recipes(sizes, &lines, buffers);
         let inverse = inverse_recipes(sizes, &lines, buffers);
         let of_turn = forward.into_iter().map(|mut recipe| {
-            recipe.work.bytes /= sizes.images as f64;
-            recipe.work.flops /= sizes.images as f64;
+            recipe.cost.bytes /= sizes.images as f64;
+            recipe.cost.operations /= sizes.images as f64;
             recipe
         });
         let stages = of_turn
@@ -82,9 +73,9 @@ impl Stages {
         self.stages.len()
     }
 
-    /// Name of a stage, and what it does for an image.
-    pub fn of(&self, stage: usize) -> (&'static str, Work) {
-        (self.stages[stage].name, self.stages[stage].work)
+    /// Name of a stage, and its work for an image.
+    pub fn of(&self, stage: usize) -> (&'static str, Cost) {
+        (self.stages[stage].name, self.stages[stage].cost)
     }
 
     /// Records a range of stages for a number of turns and images.
@@ -97,10 +88,8 @@ impl Stages {
     ) {
         let mut pass = encoder.begin_compute_pass(&wgpu::ComputePassDescriptor::default());
         for stage in &self.stages[range] {
-            pass.set_pipeline(&stage.pipeline);
-            pass.set_bind_group(0, &stage.bindings, &[]);
-            let [x, y, z] = (stage.groups)(sizes, &self.lines, turns, images);
-            pass.dispatch_workgroups(x as u32, y as u32, z as u32);
+            let groups = (stage.groups)(sizes, &self.lines, turns, images);
+            stage.step.record(&mut pass, groups);
         }
     }
 }
@@ -120,56 +109,19 @@ impl Recipe<'_> {
             })?;
             let of = suffix.to_uppercase();
             source += &format!("const LINES{of}: u32 = {}u;\n{code}", transform.lines);
-            let table = transform.twiddles();
-            tables.push((!table.is_empty()).then(|| {
-                gpu.device
-                    .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                        label: Some("twiddle"),
-                        contents: bytemuck::cast_slice(&table),
-                        usage: wgpu::BufferUsages::STORAGE,
-                    })
-            }));
+            let table = gpu.filled("twiddle", &transform.twiddles())?;
+            tables.push(table);
         }
         source += &self.code;
-        let module = gpu.shader(self.name, source);
-        let pipeline = gpu
-            .device
-            .create_compute_pipeline(&wgpu::ComputePipelineDescriptor {
-                label: Some(self.name),
-                layout: None,
-                module: &module,
-                entry_point: Some("main"),
-                compilation_options: wgpu::PipelineCompilationOptions {
-                    // Every invocation fills the part of a workgroup's memory that it reads.
-                    zero_initialize_workgroup_memory: false,
-                    ..Default::default()
-                },
-                cache: None,
-            });
-        gpu.check()?;
-        // A table that a transform does not read has a number and no entry.
-        let tables = tables.iter().map(Option::as_ref);
-        let entries: Vec<wgpu::BindGroupEntry> = tables
-            .chain(self.buffers.iter().copied().map(Some))
-            .enumerate()
-            .filter_map(|(binding, buffer)| {
-                buffer.map(|buffer| wgpu::BindGroupEntry {
-                    binding: binding as u32,
-                    resource: buffer.as_entire_binding(),
-                })
-            })
-            .collect();
-        let bindings = gpu.device.create_bind_group(&wgpu::BindGroupDescriptor {
-            label: Some(self.name),
-            layout: &pipeline.get_bind_group_layout(0),
-            entries: &entries,
-        });
+        let kernel = Kernel::new(gpu, self.name, "main", &source)?;
+        let buffers: Vec<&wgpu::Buffer> =
+            tables.iter().chain(self.buffers.iter().copied()).collect();
         Ok(Stage {
             name: self.name,
-            pipeline,
-            bindings,
+            // The number of workgroups is each batch's own.
+            step: kernel.step(gpu, &buffers, [0; 3])?,
             groups: self.groups,
-            work: self.work,
+            cost: self.cost,
         })
     }
 }
@@ -235,9 +187,9 @@ fn forward_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
                 [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), turns]
             },
             // The block is cleared, and each point of a window is read and written.
-            work: Work {
+            cost: Cost {
                 bytes: 4.0 * fields * bx * by * bz + 8.0 * spread,
-                flops: 2.0 * spread,
+                operations: 2.0 * spread,
             },
         },
         Recipe {
@@ -250,9 +202,9 @@ fn forward_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
                 let across = (by / 2).div_ceil(lines.forward_z);
                 [across, bx, turns * sizes.fields]
             },
-            work: Work {
+            cost: Cost {
                 bytes: 4.0 * fields * bx * by * bz + rows,
-                flops: fields * bx * by / 2.0 * LineFft::flops_of_line(mz),
+                operations: fields * bx * by / 2.0 * LineFft::flops_of_line(mz),
             },
         },
         Recipe {
@@ -264,9 +216,9 @@ fn forward_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
                 let across = sizes.block[0].div_ceil(lines.forward_y);
                 [across, sizes.depth, turns * sizes.fields]
             },
-            work: Work {
+            cost: Cost {
                 bytes: rows + partial,
-                flops: fields * bx * depth * LineFft::flops_of_line(my),
+                operations: fields * bx * depth * LineFft::flops_of_line(my),
             },
         },
         Recipe {
@@ -278,9 +230,9 @@ fn forward_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
                 let across = sizes.columns.div_ceil(lines.forward_x);
                 [across, turns * sizes.fields, 1]
             },
-            work: Work {
+            cost: Cost {
                 bytes: partial + turned,
-                flops: fields * columns * LineFft::flops_of_line(mx),
+                operations: fields * columns * LineFft::flops_of_line(mx),
             },
         },
     ]
@@ -313,10 +265,10 @@ fn inverse_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
                 &b.readings,
             ],
             groups: |sizes, lines, _, images| [sizes.columns.div_ceil(lines.inverse_x), images, 1],
-            work: Work {
+            cost: Cost {
                 bytes: modes + along,
                 // A complex product and sum: eight operations.
-                flops: modes / 2.0 + sizes.columns as f64 * LineFft::flops_of_line(nx),
+                operations: modes / 2.0 + sizes.columns as f64 * LineFft::flops_of_line(nx),
             },
         },
         Recipe {
@@ -328,12 +280,12 @@ fn inverse_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
             ],
             buffers: of_yz,
             groups: |sizes, _, _, images| [sizes.grid[0], images, 1],
-            work: Work {
+            cost: Cost {
                 bytes: along
                     + 4.0 * rows * nz as f64
                     + 4.0 * rows
                     + if sizes.tile_fits { 0.0 } else { 2.0 * tile },
-                flops: (nx * sizes.depth) as f64 * LineFft::flops_of_line(ny)
+                operations: (nx * sizes.depth) as f64 * LineFft::flops_of_line(ny)
                     + rows / 2.0 * LineFft::flops_of_line(nz),
             },
         },
@@ -343,9 +295,9 @@ fn inverse_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
             transforms: Vec::new(),
             buffers: vec![&b.grid, &b.row_best, &b.peaks],
             groups: |_, _, _, images| [images, 1, 1],
-            work: Work {
+            cost: Cost {
                 bytes: 4.0 * sizes.peaks as f64 * rows,
-                flops: 0.0,
+                operations: 0.0,
             },
         },
     ]
@@ -375,9 +327,8 @@ fn header(sizes: &Sizes) -> String {
     let [mx, my, mz] = sizes.fine;
     let [nx, ny, nz] = sizes.grid;
     let [reach_x, reach_y, reach_z] = sizes.reach;
-    let constants = [
+    let mut header = constants(&[
         ("WIDTH", WIDTH),
-        ("MAX_GROUPS", MAX_GROUPS),
         ("FIELDS", sizes.fields),
         ("KNOTS", sizes.knots),
         ("WINDOW", sizes.window),
@@ -399,11 +350,7 @@ fn header(sizes: &Sizes) -> String {
         ("REACH_X", reach_x),
         ("REACH_Y", reach_y),
         ("REACH_Z", reach_z),
-    ];
-    let mut header: String = constants
-        .iter()
-        .map(|(name, value)| format!("const {name}: u32 = {value}u;\n"))
-        .collect();
+    ]);
     header += &format!("const LOWEST: f32 = {:e};\n", f32::MIN);
     header += "struct Column { fine_y: u32, y: u32, side: u32, start: u32, plane: u32 }\n";
     header

@@ -110,6 +110,19 @@ impl<T: Real, const D: usize> Plan<T, D> {
     pub fn width(&self) -> usize {
         self.window.width
     }
+
+    /// [power, highest first][point of the window]: polynomials in 2 f - 1, f in [0, 1) the distance of the window's
+    /// first point from its edge, of its points' values.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn window_rows(&self) -> Vec<&[T]> {
+        self.window.rows().collect()
+    }
+
+    /// One over the window's transform, by mode of an axis.
+    #[cfg(feature = "gpu")]
+    pub(crate) fn factors(&self, axis: usize) -> &[T] {
+        &self.factors[axis]
+    }
 }
 
 /// A grid and a window that reach the tolerance.

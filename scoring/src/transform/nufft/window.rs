@@ -69,6 +69,12 @@ impl<T: Real> Window<T> {
         (first as usize, values)
     }
 
+    /// Coefficients of its points, the highest power first.
+    #[cfg(feature = "gpu")]
+    pub(super) fn rows(&self) -> impl Iterator<Item = &[T]> {
+        self.coefficients.iter().map(|row| &row[..self.width])
+    }
+
     /// Transform of the window at `frequency` cycles per cell.
     pub(super) fn transform(&self, frequency: f64) -> f64 {
         let w = self.width as f64;

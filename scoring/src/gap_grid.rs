@@ -9,11 +9,11 @@
 //! The engine's own uniform grid scores a double skin in a box that it chooses. Here the box has exactly m points, as
 //! in the paper, and every step is separate so that it can be timed.
 
-use super::spectrum::{Body, Kernel};
-use knotdock_scoring::transform::fast_size;
-use knotdock_scoring::transform::modes::{ModeSet, place};
-use knotdock_scoring::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
-use knotdock_scoring::transform::truncation::Selection;
+use crate::kernel::Bump;
+use crate::transform::fast_size;
+use crate::transform::modes::{ModeSet, place};
+use crate::transform::real_fft_3d::{RealFft3d, RealFft3dWorkspace};
+use crate::transform::truncation::Selection;
 use num_complex::Complex64;
 
 /// A periodic cube of grid points.
@@ -85,8 +85,8 @@ impl Grid {
         Buffers::new(&self.fft)
     }
 
-    /// Samples a body's function at every grid point; the origin is the first.
-    pub fn rasterise(&self, body: &Body, kernel: &Kernel, buffers: &mut Buffers) {
+    /// Samples the sum of the bumps of balls (x, y, z, r) at every grid point; the origin is the first.
+    pub fn rasterise(&self, balls: &[[f64; 4]], bump: &Bump, buffers: &mut Buffers) {
         let n = self.per_axis;
         let h = self.edge / n as f64;
         let wrap = |index: i64| index.rem_euclid(n as i64) as usize;
@@ -95,21 +95,21 @@ impl Grid {
             first..=((at + half) / h).floor() as i64
         };
         buffers.grid.fill(0.0);
-        for ([x, y, z], &radius) in body.centers.iter().zip(&body.radii) {
-            for ix in run(*x, radius) {
+        for &[x, y, z, radius] in balls {
+            for ix in run(x, radius) {
                 let dx = ix as f64 * h - x;
                 let left = (radius * radius - dx * dx).max(0.0);
-                for iy in run(*y, left.sqrt()) {
+                for iy in run(y, left.sqrt()) {
                     let dy = iy as f64 * h - y;
                     let near = dx * dx + dy * dy;
                     let half = (radius * radius - near).max(0.0).sqrt();
                     let row = (wrap(ix) * n + wrap(iy)) * n;
-                    let along = run(*z, half);
+                    let along = run(z, half);
                     let mut at = row + wrap(*along.start());
                     for iz in along {
                         let dz = iz as f64 * h - z;
                         let distance = (near + dz * dz).sqrt();
-                        buffers.grid[at] += kernel.bump.value(distance / radius);
+                        buffers.grid[at] += bump.value(distance / radius);
                         // A division a voxel would cost as much as the bump.
                         at += 1;
                         if at == row + n {
