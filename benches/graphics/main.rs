@@ -5,6 +5,7 @@
 //! gpu` takes, and the example pair unless pairs of files are named. It prints Markdown tables, and writes the same as
 //! JSON to FILE. An adapter that is software runs the smallest sizes alone.
 
+mod balls;
 mod search;
 
 use knotdock_scoring::gpu::{ADAPTER_VARIABLE, Ceilings, GpuDevice};
@@ -83,6 +84,7 @@ fn main() -> Result<(), Box<dyn Error>> {
         .map(|(name, knots)| search::measure(&card, name, knots))
         .collect();
     results["search"] = searches?.into();
+    results["balls"] = balls::measure(&card)?;
     if let Some(file) = json {
         std::fs::write(&file, serde_json::to_vec_pretty(&results)?)
             .map_err(|error| format!("{file}: {error}"))?;

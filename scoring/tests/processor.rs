@@ -235,6 +235,28 @@ fn gap_functions_on_grids() {
     }
 }
 
+/// On a device with no more than every adapter has and every index in its shaders tested: the same bits.
+#[test]
+fn the_least_that_adapters_have_gives_the_same_bits() {
+    let Some(gpu) = adapter() else { return };
+    let least = GpuDevice::open_least(None).unwrap();
+    let (first, second) = (balls(37, 3.0, [0.0; 3], 1), balls(131, 2.0, [0.0; 3], 2));
+    let (x, c) = (points::<4>(300, 3), weights(300, 4));
+    let k = frequencies::<4>(300, 40.0, 5);
+    let plan = Plan::<f64, 4>::new([8, 6, 4, 5], 1e-5, 300).unwrap();
+    let [most, same] = [&gpu, &least].map(|gpu| {
+        (
+            gpu.pair_sums(&first, &second).unwrap(),
+            gpu.pair_distances(&first, &second, &points(9, 6)).unwrap(),
+            gpu.wave_sums(&x, &c, &k).unwrap(),
+            gpu.wave_hits(&k, &c, &x, 0.5).unwrap(),
+            gpu.gap_grid([&first, &second], 40, 5.0).unwrap(),
+            gpu.knot_modes(&plan, &x, &c).unwrap(),
+        )
+    });
+    assert_eq!(most, same);
+}
+
 /// In the 2-norm over all modes: the plan's tolerance, and 1e-5 of single precision and whole numbers.
 #[test]
 fn fast_transforms_of_knots() {

@@ -6,7 +6,7 @@ set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 out=${1:-$here}
 export KNOTDOCK_NEEDS_GPU=1
-"$here/checks" gpu:: --quiet
+"$here/checks" gpu:: processor:: --quiet
 files=()
 for receptor in "$here"/pairs/*_receptor.pdb; do
     files+=("$receptor" "${receptor%_receptor.pdb}_ligand.pdb")
