@@ -230,10 +230,11 @@ class DockOptions(TypedDict, total=False):
     """Floating-point type of the search: single or double. single allows tolerances down to 1e-4, double down
     to 1e-6. What is reported is in double precision either way. [default: single]"""
 
-    engine: Literal["cpu", "gpu"]
-    """What computes the correlations: cpu, or gpu, a graphics processor. A graphics processor works through
-    Vulkan, Metal or Direct3D 12, in single precision. If there are several, the environment variable
-    WGPU_ADAPTER_NAME names one. [default: cpu]"""
+    engine: Literal["cpu", "gpu", "auto"]
+    """What computes the correlations: cpu; gpu, a graphics processor; or auto, which takes one if it can. auto
+    goes on with the CPU if there is no graphics processor of its own, if one fails, which a warning says, or if
+    the options need the CPU. A graphics processor works through Vulkan, Metal or Direct3D 12, in single
+    precision. If there are several, the environment variable WGPU_ADAPTER_NAME names one. [default: cpu]"""
 
     per_rotation: float | str
     """Peaks kept of each rotation. [default: 3]"""
