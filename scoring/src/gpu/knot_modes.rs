@@ -136,5 +136,10 @@ fn spread<const D: usize>(
         fine,
     ];
     let items = points.len() * widths[..3].iter().product::<usize>();
+    if items.div_ceil(WIDTH) > u32::MAX as usize / WIDTH {
+        return Err(gpu.too_small(format!(
+            "{items} rows of windows, of 2^32 that can be numbered"
+        )));
+    }
     kernel.step(gpu, &buffers, groups(items.div_ceil(WIDTH)))
 }
