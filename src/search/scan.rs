@@ -12,6 +12,8 @@ use crate::search::scan_engine::ScanEngine;
 use crate::search::scan_engine::no_graphics;
 #[cfg(feature = "gpu")]
 use knotdock_scoring::engine::gpu::{GpuEngine, LigandRotation};
+#[cfg(feature = "gpu")]
+use knotdock_scoring::gpu::GpuError;
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::{Peak, PeakLimits};
 use knotdock_structures::Error;
@@ -21,6 +23,9 @@ use std::time::Instant;
 
 /// Images of a rotation at the most.
 const IMAGES: usize = GridTurn::ALL.len();
+
+/// Peaks that come back from a graphics processor together, at most.
+pub(crate) const TOGETHER: usize = 1 << 20;
 
 /// Peaks that a scan found.
 pub(crate) struct Scanned {
@@ -57,10 +62,11 @@ pub(crate) fn scan(
         Some(gpu) if engine.failure().is_none() => {
             match scan_on_card(plan, gpu, groups, most, progress) {
                 Err(error) if plan.device == EngineChoice::Auto => {
+                    progress.go_on()?;
                     engine.leave_card(&error);
                     on_cores()
                 }
-                scanned => scanned?,
+                scanned => scanned.map_err(no_graphics)?,
             }
         }
         _ => on_cores(),
@@ -84,21 +90,20 @@ fn scan_on_card(
     groups: &[RotationGroup],
     most: usize,
     progress: &dyn Progress,
-) -> Result<Scanned, Error> {
-    // Peaks that come back together.
-    const TOGETHER: usize = 1 << 20;
+) -> Result<Scanned, GpuError> {
     let part = (TOGETHER / (plan.rotations.images * plan.per_rotation)).max(1);
     let mut peaks: Vec<Peak> = Vec::new();
     for groups in groups.chunks(part) {
-        progress.go_on()?;
+        if progress.go_on().is_err() {
+            break; // The run ends where this is asked for next.
+        }
         let turn = |group: &RotationGroup| LigandRotation {
             rotation: plan.rotations.rotation(group.first).0,
             wanted: group.wanted,
         };
         let turns: Vec<LigandRotation> = groups.iter().map(turn).collect();
         let found = gpu.best(&turns, &mut |images| progress.advance(images as u64));
-        let found = found.map_err(no_graphics)?;
-        peaks.extend(found.into_iter().map(|peak| Peak {
+        peaks.extend(found?.into_iter().map(|peak| Peak {
             score: f64::from(peak.score),
             rotation: (groups[peak.turn].first + peak.image) as u32,
             voxel: peak.voxel,

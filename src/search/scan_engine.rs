@@ -88,7 +88,7 @@ impl ScanEngine {
         };
         match plan.device {
             EngineChoice::Cpu => {}
-            EngineChoice::Gpu => engine.open_gpu(plan)?,
+            EngineChoice::Gpu => engine.open_gpu(plan).map_err(no_graphics)?,
             EngineChoice::Auto => engine
                 .open_gpu(plan)
                 .unwrap_or_else(|error| engine.leave_card(&error)),
@@ -110,25 +110,26 @@ impl ScanEngine {
     }
 
     /// Goes on without the graphics processor.
-    pub fn leave_card(&self, error: &Error) {
+    pub fn leave_card(&self, error: &impl std::fmt::Display) {
         // The first reason stands.
         let _ = self.failure.set(error.to_string());
     }
 
     #[cfg(feature = "gpu")]
-    fn open_gpu(&mut self, plan: &SearchPlan) -> Result<(), Error> {
+    fn open_gpu(&mut self, plan: &SearchPlan) -> Result<(), GpuError> {
         let name = std::env::var(ADAPTER_VARIABLE).ok();
+        let name = name.filter(|name| !name.is_empty());
         let is_chosen = plan.device == EngineChoice::Gpu || name.is_some();
         let device = match GpuDevice::open(name.as_deref()) {
             Err(GpuError::NoAdapter { .. }) if !is_chosen => return Ok(()),
-            device => device.map_err(no_graphics)?,
+            device => device?,
         };
         if device.is_software() && !is_chosen {
             return Ok(());
         }
         let (count, bytes) = (plan.per_rotation, plan.graphics_bytes);
         let gpu = GpuEngine::new(&device, &self.cpu, count, NEIGHBOURS, bytes);
-        let gpu = gpu.map_err(no_graphics)?;
+        let gpu = gpu?;
         self.adapter = Some(Adapter {
             name: device.name().to_owned(),
             backend: device.backend(),
@@ -140,7 +141,7 @@ impl ScanEngine {
     }
 
     #[cfg(not(feature = "gpu"))]
-    fn open_gpu(&mut self, _: &SearchPlan) -> Result<(), Error> {
-        Err(no_graphics("this build was made without the feature `gpu`"))
+    fn open_gpu(&mut self, _: &SearchPlan) -> Result<(), &'static str> {
+        Err("this build was made without the feature `gpu`")
     }
 }

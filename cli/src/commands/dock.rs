@@ -203,7 +203,7 @@ impl Dock {
     /// Threads that the options name, and whether the run is docked alone: with a time limit or a graphics processor.
     pub fn own_threads(&self) -> Result<(Option<usize>, bool), Error> {
         let options = self.options.given()?.options;
-        let is_alone = self.budget.is_some() || options.search.engine != EngineChoice::Cpu;
+        let is_alone = self.budget.is_some() || options.engine() != EngineChoice::Cpu;
         Ok((options.machine.threads, is_alone))
     }
 
@@ -335,7 +335,8 @@ fn check_wanted(wanted: RunTarget, options: &DockOptions) -> Result<(), Error> {
         return Ok(());
     }
     if options.search.engine != EngineChoice::Cpu {
-        let error = "--accuracy and --budget use the times of the CPU, and --engine gives another";
+        let error =
+            "--accuracy and --budget use the times of the CPU, and the engine is gpu or auto";
         return Err(Error::input(error)
             .help("set --rotations, --tolerance and --spacing, or dock with --engine cpu"));
     }

@@ -156,7 +156,7 @@ impl TradeoffCommand {
 fn check(request: &Request, parameters: &[Parameter]) -> Result<(), Error> {
     if request.options.search.engine != EngineChoice::Cpu {
         let error = "settings are weighed by processor time, of which a search on a graphics processor takes next to none";
-        return Err(Error::input(error).help("leave out --engine"));
+        return Err(Error::input(error).help("give --engine cpu"));
     }
     let other = if request.bodies.are_meshes() {
         Scope::Molecules

@@ -1,11 +1,10 @@
-//! What an adapter does at the most, measured: bytes copied and multiplications added per second. Shaders are judged by
-//! their shares of both.
+//! Peak rates of an adapter, measured: bytes copied and operations per second. Shaders are judged by their shares of both.
 
 use super::kernel::Kernel;
 use super::{GpuDevice, GpuError};
 use std::time::Instant;
 
-/// The most that an adapter does.
+/// Peak rates of an adapter.
 #[derive(Clone, Copy, Debug)]
 pub struct Ceilings {
     /// Bytes per second of a copy within its memory, read and written both counted.

@@ -1,6 +1,6 @@
 //! The graphics processor that is used, and its errors.
 
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Duration;
 use thiserror::Error;
 
@@ -66,8 +66,10 @@ pub struct GpuDevice {
     info: wgpu::AdapterInfo,
     /// Whether shaders test each index.
     is_checked: bool,
-    /// The first error that no call returned.
+    /// The first error since they were last asked for.
     failure: Arc<Mutex<Option<String>>>,
+    /// Why the device is lost, if it is.
+    lost: Arc<OnceLock<String>>,
 }
 
 impl GpuDevice {
@@ -86,6 +88,7 @@ impl GpuDevice {
     ///
     /// # Errors
     /// [`GpuError`] where none is there or it cannot be opened.
+    #[doc(hidden)]
     pub fn open_least(wanted: Option<&str>) -> Result<Self, GpuError> {
         Self::open_as(wanted, true)
     }
@@ -125,10 +128,12 @@ impl GpuDevice {
         device.on_uncaptured_error(Arc::new(move |error: wgpu::Error| {
             note(&noted, error.to_string());
         }));
-        let noted = Arc::clone(&failure);
+        let lost = Arc::new(OnceLock::new());
+        let noted = Arc::clone(&lost);
         device.set_device_lost_callback(move |reason, message| {
             if reason != wgpu::DeviceLostReason::Destroyed {
-                note(&noted, message);
+                // The first reason stands.
+                let _ = noted.set(message);
             }
         });
         let limits = device.limits();
@@ -140,6 +145,7 @@ impl GpuDevice {
             info,
             is_checked: least,
             failure,
+            lost,
         })
     }
 
@@ -153,7 +159,7 @@ impl GpuDevice {
             return self.device.create_shader_module(descriptor);
         }
         // SAFETY: shaders here index by sizes that also made their buffers, their loops end by the same sizes, and they
-        // divide by constants. Tests run all of them with the checks on, to the same bits.
+        // divide by constants. Tests run all of them with the checks on, to the same results.
         unsafe {
             self.device
                 .create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())
@@ -161,6 +167,7 @@ impl GpuDevice {
     }
 
     /// The device with buffers of at most `bytes`, for tests of computations that divide theirs.
+    #[doc(hidden)]
     pub fn with_buffers_of(&self, bytes: usize) -> Self {
         Self {
             binding_limit: bytes.min(self.binding_limit),
@@ -199,27 +206,30 @@ impl GpuDevice {
         }
     }
 
-    /// Fails if the device has reported an error.
+    /// Fails if the device has reported an error since the last time, or is lost.
     pub(crate) fn check(&self) -> Result<(), GpuError> {
         let failure = self
             .failure
             .lock()
             .unwrap_or_else(PoisonError::into_inner)
-            .clone();
-        failure.map_or(Ok(()), |message| Err(self.driver(message)))
+            .take();
+        match failure.as_ref().or(self.lost.get()) {
+            Some(message) => Err(self.driver(message.clone())),
+            None => Ok(()),
+        }
     }
 
-    /// Refuses numbers that are not finite.
+    /// Refuses numbers that are not finite, or beyond those whose squares single precision holds.
     pub(crate) fn finite<const N: usize>(
         &self,
         what: &str,
         all: &[[f64; N]],
     ) -> Result<(), GpuError> {
-        let finite = |one: &[f64; N]| one.iter().all(|part| part.is_finite());
+        let finite = |one: &[f64; N]| one.iter().all(|part| part.abs() <= 1e18);
         match all.iter().position(|one| !finite(one)) {
             None => Ok(()),
             Some(index) => Err(GpuError::Input(format!(
-                "{what} {index} is not finite: {:?}",
+                "{what} {index} is not finite, or larger than 1e18: {:?}",
                 all[index]
             ))),
         }

@@ -26,7 +26,7 @@ pub struct GapGrid {
     /// Cost: per ball near a block 16 bytes and, at each of its 128 points, 15 operations; 8 bytes per grid point.
     pub rasterise: Job<[f32; 2]>,
     /// Transforms the sampled solids, multiplies and transforms back: the values, row-major, z fastest, translation zero
-    /// first. The samples are lost.
+    /// first. The samples are lost: to be run once after each run of `rasterise`.
     ///
     /// Cost: in each of six passes 16 bytes per point and 5 n log2 n operations per line of n; in the product 24 bytes
     /// and 14 operations per point.
@@ -53,7 +53,20 @@ impl GapGrid {
         for balls in balls {
             gpu.finite("ball", balls)?;
         }
-        let points = per_axis.pow(3);
+        if let Some(large) = balls.iter().copied().flatten().find(|ball| ball[3] > edge) {
+            return Err(GpuError::Input(format!(
+                "a ball of radius {} in a cube of edge {edge}; no larger one than the edge is possible",
+                large[3]
+            )));
+        }
+        let points = per_axis
+            .checked_pow(3)
+            .filter(|points| *points <= usize::MAX / 8);
+        let points = points.ok_or_else(|| {
+            gpu.too_small(format!(
+                "{per_axis} points per axis are more than memory can have"
+            ))
+        })?;
         let arrays = [
             gpu.zeros("grid", 8 * points)?,
             gpu.zeros("grid", 8 * points)?,

@@ -136,7 +136,8 @@ fn spread<const D: usize>(
         fine,
     ];
     let items = points.len() * widths[..3].iter().product::<usize>();
-    if items.div_ceil(WIDTH) > u32::MAX as usize / WIDTH {
+    let launched: usize = groups(items.div_ceil(WIDTH)).iter().product();
+    if launched > u32::MAX as usize / WIDTH {
         return Err(gpu.too_small(format!(
             "{items} rows of windows, of 2^32 that can be numbered"
         )));

@@ -1,9 +1,8 @@
 //! The complex FFT of a few lines at once in a workgroup's memory, written out as WGSL for one length.
 //!
 //! Stockham's self-sorting form: every pass reads one array and writes the other, so that none reorders. A pass takes
-//! a radix up to 16, in registers, so that most lengths to 256 take two passes. Lines stand apart by an odd number of
-//! places, and a place is left free after every sixteen points: so the strides of passes meet different banks of the
-//! memory. Source: Govindaraju et al., *High performance discrete Fourier
+//! a radix up to 16, in registers, so that most lengths to 256 take two passes. The stride between lines is odd, and a
+//! place is left free after every sixteen points: so the strides of passes meet different banks of the memory. Source: Govindaraju et al., *High performance discrete Fourier
 //! transforms on graphics processors*, SC 2008, section 3.
 
 use std::f64::consts::TAU;
@@ -11,6 +10,9 @@ use std::fmt::Write;
 
 /// Invocations of a workgroup, of every stage.
 pub(crate) const WIDTH: usize = 128;
+
+/// Most lines that a workgroup transforms together: beyond, a row of them is longer than a memory transaction.
+pub(crate) const MAX_LINES: usize = 16;
 
 /// Largest radix of a pass: its values are in registers.
 const MAX_RADIX: usize = 16;
@@ -309,9 +311,9 @@ impl Registers<'_> {
 mod tests {
     use super::*;
 
-    /// Every length that grids have takes the fewest passes of radices to 16: two up to 256.
+    /// Two passes up to 256 where two factors to 16 make the length, else three.
     #[test]
-    fn lengths_up_to_256_take_two_passes() {
+    fn lengths_take_the_fewest_passes() {
         for length in 17..=256 {
             let smooth = [2, 3, 5, 7].into_iter().fold(length, divided) == 1;
             let passes = radices(length);

@@ -1,14 +1,12 @@
 //! The FFT of all lines along one axis of a row-major array.
 
 use super::kernel::{Kernel, Step, constants, groups};
-use super::line_fft::{Direction, LineFft, WIDTH};
+use super::line_fft::{Direction, LineFft, MAX_LINES, WIDTH};
 use super::{GpuDevice, GpuError};
 use crate::processor::Cost;
 
 /// Bytes of workgroup memory of every adapter.
 const MEMORY: usize = 16 << 10;
-/// Most lines that a workgroup transforms together: beyond, a row of them is longer than a memory transaction.
-const MAX_LINES: usize = 16;
 
 /// A transform along one axis.
 pub(crate) struct Axis<'a> {
@@ -43,7 +41,7 @@ impl Axis<'_> {
         };
         let transform = fft.source("").filter(|_| fft.lines > 0).ok_or_else(|| {
             gpu.too_small(format!(
-                "no transform of {length} points: at most {MEMORY} bytes of both arrays of a line, without a prime above 7"
+                "no transform of {length} points: they may have no prime factor above 7, and take {MEMORY} bytes at most, 16 per point and what keeps banks apart"
             ))
         })?;
         let outer: usize = self.shape[..self.axis].iter().product();

@@ -59,7 +59,8 @@ fn sum_chunks(
         }
         sum += part;
     }
-    if (row < sizes.x) {
+    // The last row of workgroups may be longer than all of them.
+    if (row < sizes.x && chunk < sizes.w) {
         chunks[chunk * sizes.x + row] = sum;
     }
 }

@@ -28,6 +28,8 @@ pub(crate) struct MemoryPlan {
     pub most_in_flight: usize,
     /// Graphics memory that rotations in flight may take; 0 on the CPU.
     pub graphics: u64,
+    /// The part of it that the run is sure to take.
+    taken: u64,
     /// Largest stage of another search of the same run, and its bytes.
     beside: (&'static str, u64),
 }
@@ -50,27 +52,34 @@ impl MemoryPlan {
             let limits = (named(needed), allowed);
             return Err(too_little(scene, options, (space, refined), limits));
         }
-        // The card takes its memory first, because it searches: the cores prepare and rescore, and fewer rotations in
-        // flight on them cost little.
-        let graphics = match options.engine() {
-            EngineChoice::Cpu => 0,
-            EngineChoice::Gpu | EngineChoice::Auto => {
-                let left = allowed.map(|allowed| allowed.saturating_sub(needed));
-                left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
-            }
+        let left = |needed| {
+            let left = allowed.map(|allowed| allowed.saturating_sub(needed));
+            left.unwrap_or(u64::MAX).min(GRAPHICS_BYTES)
+        };
+        let engine = options.engine();
+        // A card that searches takes its memory first: the cores prepare and rescore, and fewer rotations in flight on them
+        // cost little. One that may be there gets what the cores leave.
+        let taken = match engine {
+            EngineChoice::Gpu => left(needed),
+            EngineChoice::Cpu | EngineChoice::Auto => 0,
         };
         let fits = |rotations| {
-            let needed = graphics + sizes.peak(rotations);
+            let needed = taken + sizes.peak(rotations);
             allowed.is_none_or(|allowed| needed <= allowed)
         };
         let threads = options.machine.thread_count().min(MAX_IN_FLIGHT);
         let most_in_flight = most(threads, fits);
+        let graphics = match engine {
+            EngineChoice::Auto => left(sizes.peak(most_in_flight)),
+            EngineChoice::Cpu | EngineChoice::Gpu => taken,
+        };
         Ok(Self {
             sizes,
             in_flight: most_in_flight.min(options.search.rotations),
             allowed,
             most_in_flight,
             graphics,
+            taken,
             beside: ("", 0),
         })
     }
@@ -93,7 +102,7 @@ impl MemoryPlan {
     /// Rotations in flight at the rank that the engine turned out to have, at least one.
     pub fn in_flight_at(&self, rank: usize) -> usize {
         most(self.in_flight(), |count| {
-            let needed = self.graphics + self.sizes.search_peak(count, rank);
+            let needed = self.taken + self.sizes.search_peak(count, rank);
             self.allowed.is_none_or(|allowed| needed <= allowed)
         })
     }
@@ -104,7 +113,7 @@ impl MemoryPlan {
     }
 
     fn own_bytes(&self) -> u64 {
-        self.sizes.peak(self.in_flight) + self.graphics
+        self.sizes.peak(self.in_flight) + self.taken
     }
 
     /// The stage that takes the most.

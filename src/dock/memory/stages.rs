@@ -82,6 +82,10 @@ pub(super) struct Sizes {
     is_on_card: bool,
 }
 
+/// Peaks that come back from a card together, and bytes of each on their way.
+const PEAKS_OF_CARD: u64 = crate::search::scan::TOGETHER as u64;
+const FOUND_ON_CARD: u64 = 56;
+
 /// The stage of the most bytes.
 fn largest<const N: usize>(stages: [(&'static str, u64); N]) -> (&'static str, u64) {
     let larger = |a: (&'static str, u64), b: (&'static str, u64)| if b.1 > a.1 { b } else { a };
@@ -213,6 +217,12 @@ impl Sizes {
 
     fn search(&self, rotations: u64, rank: usize) -> u64 {
         let rotations = self.on_cores(rotations);
+        let found = match self.is_on_card {
+            true => {
+                FOUND_ON_CARD * PEAKS_OF_CARD.min(self.images * self.groups() * self.per_rotation)
+            }
+            false => 0,
+        };
         let groups = size_of::<RotationGroup>() as u64 * self.groups();
         let lists = 2 * rotations * self.scanned() * PEAK;
         self.kept_spectra()
@@ -220,6 +230,7 @@ impl Sizes {
             + rotations * self.in_flight(rank)
             + self.scorers()
             + lists
+            + found
             + groups
     }
 

@@ -7,7 +7,6 @@ use crate::gpu::{GpuDevice, GpuError};
 use crate::transform::Real;
 use crate::transform::modes::place;
 use bytemuck::{Pod, Zeroable};
-use wgpu::util::DeviceExt;
 
 /// Sizes that a plan fixes.
 #[derive(Clone, Debug)]
@@ -125,10 +124,7 @@ impl Sizes {
 
     /// The largest batch that takes at most `memory` bytes and fits the adapter's limits.
     pub fn batch(&self, gpu: &GpuDevice, memory: u64) -> Result<Batch, GpuError> {
-        let limits = gpu.device.limits();
-        let longest = limits
-            .max_buffer_size
-            .min(limits.max_storage_buffer_binding_size);
+        let longest = gpu.binding_limit as u64;
         let (of_turn, of_image) = self.bytes();
         let fits = |batch: Batch| {
             let buffers = of_turn
@@ -227,53 +223,28 @@ impl Buffers {
             .flat_map(|points| &points[..sizes.window])
             .map(|value| value.wide() as f32)
             .collect();
-        let filled = |label, contents: &[u8]| {
-            let contents = if contents.is_empty() {
-                &[0; 4]
-            } else {
-                contents
-            };
-            gpu.device
-                .create_buffer_init(&wgpu::util::BufferInitDescriptor {
-                    label: Some(label),
-                    contents,
-                    usage: wgpu::BufferUsages::STORAGE,
-                })
-        };
-        let empty = |label, bytes: usize| {
-            gpu.device.create_buffer(&wgpu::BufferDescriptor {
-                label: Some(label),
-                size: bytes.max(REAL) as u64,
-                usage: wgpu::BufferUsages::STORAGE
-                    | wgpu::BufferUsages::COPY_SRC
-                    | wgpu::BufferUsages::COPY_DST,
-                mapped_at_creation: false,
-            })
-        };
         let Batch { turns, images } = batch;
         let (of_turn, of_image) = sizes.bytes();
-        let buffers = Self {
-            columns: filled("columns", bytemuck::cast_slice(&columns(engine, sizes))),
-            planes: filled("planes", bytemuck::cast_slice(&planes)),
-            spectra: filled("spectra", bytemuck::cast_slice(&spectra(engine, &units))),
-            readings: filled("readings", bytemuck::cast_slice(&readings(engine))),
-            knots: filled("knots", bytemuck::cast_slice(&knots)),
-            weights: filled("weights", bytemuck::cast_slice(&weights)),
-            window: filled("window", bytemuck::cast_slice(&window)),
-            turns: empty("turns", 48 * turns),
-            images: empty("images", 8 * images),
-            block: empty("block", turns * of_turn[0]),
-            fine_rows: empty("fine rows", turns * of_turn[1]),
-            partial: empty("partial", turns * of_turn[2]),
-            turned: empty("turned", turns * of_turn[3]),
-            along: empty("along", images * of_image[0]),
-            tiles: empty("tiles", images * of_image[1]),
-            grid: empty("grid", images * of_image[2]),
-            row_best: empty("row best", images * of_image[3]),
-            peaks: empty("peaks", images * of_image[4]),
-        };
-        gpu.check()?;
-        Ok(buffers)
+        Ok(Self {
+            columns: gpu.filled("columns", &columns(engine, sizes))?,
+            planes: gpu.filled("planes", &planes)?,
+            spectra: gpu.filled("spectra", &spectra(engine, &units))?,
+            readings: gpu.filled("readings", &readings(engine))?,
+            knots: gpu.filled("knots", &knots)?,
+            weights: gpu.filled("weights", &weights)?,
+            window: gpu.filled("window", &window)?,
+            turns: gpu.zeros("turns", 48 * turns)?,
+            images: gpu.zeros("images", 8 * images)?,
+            block: gpu.zeros("block", turns * of_turn[0])?,
+            fine_rows: gpu.zeros("fine rows", turns * of_turn[1])?,
+            partial: gpu.zeros("partial", turns * of_turn[2])?,
+            turned: gpu.zeros("turned", turns * of_turn[3])?,
+            along: gpu.zeros("along", images * of_image[0])?,
+            tiles: gpu.zeros("tiles", images * of_image[1])?,
+            grid: gpu.zeros("grid", images * of_image[2])?,
+            row_best: gpu.zeros("row best", images * of_image[3])?,
+            peaks: gpu.zeros("peaks", images * of_image[4])?,
+        })
     }
 }
 

@@ -1,14 +1,11 @@
 //! The stages of a batch: what each computes, on which buffers, in how many workgroups.
 
 use super::buffers::{Buffers, Sizes};
-use crate::gpu::kernel::{Kernel, MAX_GROUPS, Step, constants};
-use crate::gpu::line_fft::{Direction, LineFft, WIDTH};
+use crate::gpu::kernel::{Kernel, Step, constants, groups};
+use crate::gpu::line_fft::{Direction, LineFft, MAX_LINES, WIDTH};
 use crate::gpu::{GpuDevice, GpuError};
 use crate::processor::Cost;
 use std::ops::Range;
-
-/// Most lines that a workgroup transforms together: beyond, a row of them is longer than a memory transaction.
-const MAX_LINES: usize = 16;
 
 /// A compiled stage with its buffers.
 struct Stage {
@@ -183,8 +180,9 @@ fn forward_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
             transforms: Vec::new(),
             buffers: vec![&b.knots, &b.weights, &b.window, &b.turns, &b.block],
             groups: |sizes, _, turns, _| {
-                let groups = (sizes.knots * sizes.window * sizes.window).div_ceil(WIDTH);
-                [groups.min(MAX_GROUPS), groups.div_ceil(MAX_GROUPS), turns]
+                let rows = sizes.knots * sizes.window * sizes.window;
+                let [x, y, _] = groups(rows.div_ceil(WIDTH));
+                [x, y, turns]
             },
             // The block is cleared, and each point of a window is read and written.
             cost: Cost {
