@@ -17,7 +17,7 @@ use std::time::Instant;
 #[path = "../example/mod.rs"]
 mod example;
 
-/// What is measured: an adapter, and what it does at the most.
+/// An adapter and its peak rates.
 struct Card {
     gpu: GpuDevice,
     ceilings: Ceilings,

@@ -26,7 +26,7 @@ use num_complex::Complex64;
 /// The computations of Behandish & Ilieş (CAD 70, 2016), section 5, on one processor.
 ///
 /// Numbers must be finite, weights as many as points, and no radius larger than a grid's edge. A graphics processor
-/// refuses what is not so, and what it cannot hold.
+/// refuses other input, and sizes that it cannot hold.
 pub trait Processor {
     /// Why one cannot be done.
     type Error: std::error::Error;

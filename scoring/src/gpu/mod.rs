@@ -2,7 +2,7 @@
 //! share, and the computations of [`crate::processor`].
 //!
 //! A [`Job`] uploads its input when it is made: [`Job::pair_sums`], [`Job::pair_distances`], [`Job::knot_modes`],
-//! [`WaveSums`], [`GapGrid`]. It then runs on the card alone, and is read back apart.
+//! [`WaveSums`], [`GapGrid`]. It then runs on the card alone, and its results are read when they are wanted.
 
 mod ceilings;
 mod device;

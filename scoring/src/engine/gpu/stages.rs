@@ -301,7 +301,7 @@ fn inverse_recipes<'a>(sizes: &Sizes, lines: &Lines, b: &'a Buffers) -> [Recipe<
     ]
 }
 
-/// Where the inverse along y leaves a plane for that along z: in the workgroup's memory if it fits, else in the card's.
+/// The plane between the inverses along y and z: in the workgroup's memory if it fits, else in the card's.
 fn tile_source(sizes: &Sizes) -> String {
     let count = sizes.tile();
     if sizes.tile_fits {
