@@ -257,7 +257,9 @@ fn the_least_that_adapters_have_is_enough() {
         ]
     });
     for (most, same) in most.iter().zip(&same) {
-        let largest = most.iter().fold(0.0, |largest: f64, x| largest.max(x.abs()));
+        let largest = most
+            .iter()
+            .fold(0.0, |largest: f64, x| largest.max(x.abs()));
         let error = worst(most, same, |a, b| (a - b).abs());
         assert!(error < 1e-5 * largest, "{error} of {largest}");
     }
