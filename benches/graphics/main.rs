@@ -12,6 +12,7 @@ use knotdock_scoring::gpu::{ADAPTER_VARIABLE, Ceilings, GpuDevice};
 use knotdock_scoring::processor::Cost;
 use serde_json::{Value, json};
 use std::error::Error;
+use std::path::Path;
 use std::time::Instant;
 
 #[path = "../example/mod.rs"]
@@ -67,10 +68,15 @@ fn main() -> Result<(), Box<dyn Error>> {
         named if named.len() > 0 => {
             for files in named {
                 let knots = [example::load(&files[0])?, example::load(&files[1])?];
-                pairs.push((files[0].clone(), knots));
+                let name = Path::new(&files[0]).file_stem().unwrap_or_default();
+                pairs.push((name.display().to_string(), knots));
             }
         }
         _ => pairs.push(("1PPE".to_owned(), example::knots()?)),
+    }
+    if card.gpu.is_software() {
+        pairs.sort_by_key(|(_, [receptor, _])| receptor.len());
+        pairs.truncate(1);
     }
     let mut results = json!({
         "adapter": card.gpu.name(),

@@ -4,6 +4,7 @@ use crate::{Card, least_seconds};
 use knotdock_scoring::Precision;
 use knotdock_scoring::engine::gpu::{GpuEngine, LigandRotation};
 use knotdock_scoring::engine::{CpuEngine, Plan, ReceptorSpectra};
+use knotdock_scoring::gpu::GpuError;
 use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::PeakLimits;
 use knotdock_scoring::quantity::Quantity;
@@ -45,9 +46,15 @@ pub fn measure(
         let engine = CpuEngine::new(Arc::clone(&plan), &spectra, ligand, rank);
         let core = on_core(&engine, images)?;
         for memory in MEMORY {
-            let on_card = GpuEngine::new(&card.gpu, &engine, PEAKS.0, PEAKS.1, memory << 20)?;
+            if card.gpu.is_software() && memory < MEMORY[2] {
+                continue;
+            }
+            let on_card = match GpuEngine::new(&card.gpu, &engine, PEAKS.0, PEAKS.1, memory << 20) {
+                Err(GpuError::TooSmall { .. }) if memory < MEMORY[2] => continue,
+                on_card => on_card?,
+            };
             for rotations in ROTATIONS {
-                if card.gpu.is_software() && (rotations > ROTATIONS[0] || memory < MEMORY[2]) {
+                if card.gpu.is_software() && rotations > ROTATIONS[0] {
                     continue;
                 }
                 let turns = turns(rotations, images);

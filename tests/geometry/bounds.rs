@@ -72,14 +72,14 @@ fn bounds_of_meshes_hold_the_true_volume() {
     // Two bars of 2 by 3, and what the edge inside leaves of a square.
     let shrunk = 3.0 * (8.0 * 2.0 + 6.0 * 2.0 + 1.0 - 0.25 * PI);
     for (command, exact) in [
-        ("open cube.obj two.csv", opened),
-        ("offset cube.obj --distance 1", grown),
-        ("offset l.obj --distance -1", shrunk),
-        ("difference l.obj one.csv", shrunk),
+        ("open cube.obj two.csv --grid 2^12", opened),
+        ("offset cube.obj --distance 1 --grid 2^12", grown),
+        ("offset l.obj --distance -1 --grid 2^12", shrunk),
+        ("difference l.obj one.csv --grid 2^12", shrunk),
         ("sum cube.obj small.obj --grid 2^9", 2197.0),
         ("sum one.csv cube.obj --grid 2^9", grown),
-        ("product cube.obj --poses line.csv", 1300.0),
-        ("quotient cube.obj --poses line.csv", 700.0),
+        ("product cube.obj --poses line.csv --grid 2^12", 1300.0),
+        ("quotient cube.obj --poses line.csv --grid 2^12", 700.0),
     ] {
         let [least, most] = volume(folder.path(), command);
         assert!(
@@ -92,7 +92,7 @@ fn bounds_of_meshes_hold_the_true_volume() {
         );
     }
     // The closing fills a part of the fillet along the edge inside.
-    let [least, most] = volume(folder.path(), "close l.obj two.csv");
+    let [least, most] = volume(folder.path(), "close l.obj two.csv --grid 2^12");
     let filled = 320.0 + 5.0 * 4.0 * (1.0 - 0.25 * PI);
     assert!(
         least <= filled && 320.0 <= most && most - least <= 32.0,
