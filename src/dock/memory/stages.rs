@@ -27,7 +27,7 @@ const PROGRAM: u64 = 16 << 20;
 /// Bytes of an atom as read, if the system does not say.
 const ATOM_READ: u64 = 1 << 10;
 /// Bytes of the program's code and tables that are first used after planning.
-const CODE: u64 = 3 << 20;
+const CODE: u64 = 4 << 20;
 /// Bytes of a ball in the exact score.
 const BALL_SCORED: u64 = 1 << 8;
 /// Bytes of an atom in the pose terms, and of their tables.
