@@ -1,8 +1,8 @@
-//! Minkowski sums by pairs (section 5.1): centres are added, radii too.
+//! Minkowski sums by pairs (Behandish & Ilieş, CAD 70, 2016, section 5.1): centres are added, radii too.
 //!
 //! A solid is a set of balls, or the nodes of a uniform grid inside it. The sum of n1 and n2 of them has n1 n2. It is
-//! written to memory, or streamed: each is computed, used and forgotten. What uses them here is the gap at a place, the
-//! distance to an obstacle.
+//! written to memory, or streamed: each is computed, used and forgotten. The use here is the gap at a place, the distance
+//! to an obstacle.
 
 /// Centre and radius of a ball: x, y, z, r.
 pub type Knot = [f64; 4];

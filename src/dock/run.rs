@@ -305,11 +305,10 @@ impl Prepared {
         } = rank_of(plan, &spectra);
         let components = components_by_effect(&spectra, &shares);
         let in_flight = plan.memory.in_flight_at(engine.rank());
+        let mut scan_engine = ScanEngine::new(&plan.search, engine)?;
+        scan_engine.in_flight = in_flight;
         let prepared = Self {
-            engine: ScanEngine {
-                in_flight,
-                ..ScanEngine::new(&plan.search, engine)?
-            },
+            engine: scan_engine,
             spectra: (plan.refined() > 0).then_some(spectra),
             scorer: plan.exact_scorer()?,
             rank_error,

@@ -29,7 +29,8 @@ options! {
         /// What computes the correlations: cpu; gpu, a graphics processor; or auto, which takes one if it can.
         ///
         /// auto takes the CPU if there is no graphics processor, if it fails (with a warning), or if other options need the
-        /// CPU; --budget, --accuracy and tradeoff refuse it. A graphics processor works through Vulkan, Metal or Direct3D 12, in single precision. If there are several, the
+        /// CPU; --budget, --accuracy and tradeoff refuse it. A graphics processor works through Vulkan, Metal or Direct3D 12,
+        /// in single precision. If there are several, the
         /// environment variable WGPU_ADAPTER_NAME names one.
         engine: EngineChoice = EngineChoice::Cpu, "cpu|gpu|auto", Choice;
         /// Peaks kept of each rotation.

@@ -51,9 +51,9 @@ pub(crate) struct ScanEngine {
     #[cfg(feature = "gpu")]
     pub gpu: Option<GpuEngine>,
     /// The graphics processor in use.
-    pub adapter: Option<Adapter>,
+    adapter: Option<Adapter>,
     /// Why it is not in use, if it was to be taken if it could.
-    pub failure: OnceLock<String>,
+    failure: OnceLock<String>,
     /// Rotations in flight on the CPU: the plan's, or fewer if the engine needs more memory than was planned.
     pub in_flight: usize,
 }

@@ -158,8 +158,8 @@ impl GpuDevice {
         if self.is_checked {
             return self.device.create_shader_module(descriptor);
         }
-        // SAFETY: shaders here index by sizes that also made their buffers, their loops end by the same sizes, and they
-        // divide by constants. Tests run all of them with the checks on, to the same results.
+        // SAFETY: shaders here index by sizes that also made their buffers, their loops end by the same sizes, and no
+        // divisor is zero. Tests run all of them with the checks on, to the same results.
         unsafe {
             self.device
                 .create_shader_module_trusted(descriptor, wgpu::ShaderRuntimeChecks::unchecked())

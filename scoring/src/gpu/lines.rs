@@ -41,7 +41,7 @@ impl Axis<'_> {
         };
         let transform = fft.source("").filter(|_| fft.lines > 0).ok_or_else(|| {
             gpu.too_small(format!(
-                "no transform of {length} points: they may have no prime factor above 7, and take {MEMORY} bytes at most, 16 per point and what keeps banks apart"
+                "no transform of {length} points: a length has no prime factor above 7, and takes {MEMORY} bytes of workgroup memory at most, about 17 per point"
             ))
         })?;
         let outer: usize = self.shape[..self.axis].iter().product();
