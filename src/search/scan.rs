@@ -213,3 +213,62 @@ fn scan_on_cores(
         rotations: searched.into_inner(),
     }
 }
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests {
+    use super::*;
+    use crate::dock::plan::{DockPlan, plan};
+    use crate::options::DockOptions;
+    use crate::priors::residue_roles::tests::peptide;
+    use crate::progress::NoProgress;
+    use knotdock_scoring::Precision;
+    use knotdock_scoring::engine::{CpuEngine, ReceptorSpectra, choose_rank};
+    use knotdock_scoring::quantity::Quantity;
+
+    fn engine_of(plan: &DockPlan) -> CpuEngine {
+        let engine = &plan.search.engine;
+        let (receptor, ligand) = (&plan.receptor, &plan.ligand);
+        let spectra =
+            ReceptorSpectra::new(engine, receptor, ligand, Quantity::Score, Precision::Single);
+        choose_rank(engine, &spectra, ligand, &plan.search.rotations.coarse).engine
+    }
+
+    /// A card that is lost after some rotations: with `auto` the cores search all of them, with `gpu` it is an error.
+    #[test]
+    fn cores_take_over_from_a_card_that_is_lost() {
+        let options = DockOptions::default().changed(|options| {
+            options.search.engine = EngineChoice::Gpu;
+            options.search.rotations = 24;
+            options.machine.threads = 1.into();
+        });
+        let mut plan = plan(&peptide(0.0), &peptide(4.0), &options).unwrap();
+        let engine = match ScanEngine::new(&plan.search, engine_of(&plan)) {
+            Ok(engine) => engine,
+            Err(error) => {
+                let needed = std::env::var_os("KNOTDOCK_NEEDS_GPU").is_some();
+                assert!(!needed, "{error}");
+                println!("not tried: {error}");
+                return;
+            }
+        };
+        let groups = plan.search.rotations.groups();
+        let by = |search: &SearchPlan, engine: &ScanEngine| {
+            scan(search, engine, &groups, 20, None, &NoProgress)
+        };
+        assert!(by(&plan.search, &engine).is_ok());
+        assert!(engine.adapter().is_some());
+        engine.gpu.as_ref().unwrap().lose_device();
+        let error = by(&plan.search, &engine).err().unwrap();
+        assert!(error.to_string().contains("--engine gpu"), "{error}");
+        assert!(engine.failure().is_none());
+        plan.search.device = EngineChoice::Auto;
+        let taken_over = by(&plan.search, &engine).unwrap();
+        assert!(engine.failure().is_some() && engine.adapter().is_none());
+        plan.search.device = EngineChoice::Cpu;
+        let alone = ScanEngine::new(&plan.search, engine_of(&plan)).unwrap();
+        let alone = by(&plan.search, &alone).unwrap();
+        assert_eq!(taken_over.rotations, alone.rotations);
+        assert_eq!(taken_over.peaks, alone.peaks);
+        assert!(!alone.peaks.is_empty());
+    }
+}

@@ -81,7 +81,7 @@ async function showRun(data) {
     if (data.rows.length === 0) return;
     scene = makeScene(byId("scene"), data);
     wire(scene, data, isMesh);
-    drawBest(scene, data, bestRows(clusters), column, choose);
+    scene.small(() => drawBest(scene, data, bestRows(clusters), column, choose));
     scene.show(Math.max(chosen, 0));
   });
   if (data.rows.length > 0) choose(0);

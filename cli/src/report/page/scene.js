@@ -155,6 +155,15 @@ function makeScene(root, data) {
       viewer.render();
     },
     picture: () => viewer.pngURI(),
+    /** Calls `draw` while the view has a quarter of its width and height, which no frame shows. */
+    small(draw) {
+      const { clientWidth, clientHeight } = root;
+      Object.assign(root.style, { width: `${clientWidth / 4}px`, height: `${clientHeight / 4}px` });
+      viewer.resize();
+      draw();
+      Object.assign(root.style, { width: "", height: "" });
+      viewer.resize();
+    },
     turn(angle, axis) { viewer.rotate(angle, axis); },
   };
 }

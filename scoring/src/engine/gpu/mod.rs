@@ -126,6 +126,12 @@ impl GpuEngine {
         self.batch.images
     }
 
+    /// Takes the device from the engine, as if it were lost: for tests.
+    #[doc(hidden)]
+    pub fn lose_device(&self) {
+        self.gpu.device.destroy();
+    }
+
     /// The best voxels of every wanted image of every turn, in the order of the turns.
     ///
     /// `done` is called with the number of images as they are finished.
