@@ -110,14 +110,15 @@ impl<'a> Searched<'a> {
         progress: &dyn Progress,
     ) -> Result<Self, Error> {
         let mut clock = Stopwatch::start();
+        let (prepared, rescorer) =
+            rayon::join(|| Prepared::new(plan, progress), || plan.rescorer());
         let Prepared {
             spectra,
             engine,
             scorer,
             rank_error,
             components,
-        } = Prepared::new(plan, progress)?;
-        let rescorer = plan.rescorer();
+        } = prepared?;
         let body = RigidBody::new(points).with_equivalents(plan.search.space.equivalents());
         let scorers = (&scorer, rescorer.as_ref());
         let search_end = deadline.map(|end| search_deadline(plan, &engine, end, scorers, &body));
@@ -290,19 +291,23 @@ impl Prepared {
     /// Transforms the receptor and chooses the rank.
     fn new(plan: &DockPlan, progress: &dyn Progress) -> Result<Self, Error> {
         progress.stage("prepare", 1);
-        let engine = &plan.search.engine;
-        let spectra = ReceptorSpectra::new(
-            engine,
-            &plan.receptor,
-            &plan.ligand,
-            Quantity::Score,
-            plan.options.search.precision.into(),
-        );
+        let chosen = || {
+            let spectra = ReceptorSpectra::new(
+                &plan.search.engine,
+                &plan.receptor,
+                &plan.ligand,
+                Quantity::Score,
+                plan.options.search.precision.into(),
+            );
+            let chosen = rank_of(plan, &spectra);
+            (spectra, chosen)
+        };
+        let ((spectra, chosen), scorer) = rayon::join(chosen, || plan.exact_scorer());
         let ChosenRank {
             engine,
             error: rank_error,
             shares,
-        } = rank_of(plan, &spectra);
+        } = chosen;
         let components = components_by_effect(&spectra, &shares);
         let in_flight = plan.memory.in_flight_at(engine.rank());
         let mut scan_engine = ScanEngine::new(&plan.search, engine)?;
@@ -310,7 +315,7 @@ impl Prepared {
         let prepared = Self {
             engine: scan_engine,
             spectra: (plan.refined() > 0).then_some(spectra),
-            scorer: plan.exact_scorer()?,
+            scorer: scorer?,
             rank_error,
             components,
         };
@@ -591,5 +596,63 @@ pub fn molecule_points(ligand: &Molecule) -> Vec<[f64; 3]> {
         alphas
     } else {
         ligand.atoms.iter().map(|atom| atom.position).collect()
+    }
+}
+
+#[cfg(all(test, feature = "gpu"))]
+mod tests {
+    use super::*;
+    use crate::dock::plan::plan;
+    use crate::options::{DockOptions, EngineChoice};
+    use crate::priors::residue_roles::tests::peptide;
+    use crate::search::plan::SearchPlan;
+    use knotdock_scoring::Precision;
+    use knotdock_scoring::engine::{CpuEngine, choose_rank};
+
+    fn engine_of(plan: &DockPlan) -> CpuEngine {
+        let engine = &plan.search.engine;
+        let (receptor, ligand) = (&plan.receptor, &plan.ligand);
+        let spectra =
+            ReceptorSpectra::new(engine, receptor, ligand, Quantity::Score, Precision::Single);
+        choose_rank(engine, &spectra, ligand, &plan.search.rotations.coarse).engine
+    }
+
+    /// A card that is lost after some rotations: with `auto` the cores search all of them, with `gpu` it is an error.
+    #[test]
+    fn cores_take_over_from_a_card_that_is_lost() {
+        let options = DockOptions::default().changed(|options| {
+            options.search.engine = EngineChoice::Gpu;
+            options.search.rotations = 24;
+            options.machine.threads = 1.into();
+        });
+        let mut plan = plan(&peptide(0.0), &peptide(4.0), &options).unwrap();
+        let engine = match ScanEngine::new(&plan.search, engine_of(&plan)) {
+            Ok(engine) => engine,
+            Err(error) => {
+                let needed = std::env::var_os("KNOTDOCK_NEEDS_GPU").is_some();
+                assert!(!needed, "{error}");
+                println!("not tried: {error}");
+                return;
+            }
+        };
+        let groups = plan.search.rotations.groups();
+        let by = |search: &SearchPlan, engine: &ScanEngine| {
+            scan(search, engine, &groups, 20, None, &NoProgress)
+        };
+        assert!(by(&plan.search, &engine).is_ok());
+        assert!(engine.adapter().is_some());
+        engine.gpu.as_ref().unwrap().lose_device();
+        let error = by(&plan.search, &engine).err().unwrap();
+        assert!(error.to_string().contains("--engine gpu"), "{error}");
+        assert!(engine.failure().is_none());
+        plan.search.device = EngineChoice::Auto;
+        let taken_over = by(&plan.search, &engine).unwrap();
+        assert!(engine.failure().is_some() && engine.adapter().is_none());
+        plan.search.device = EngineChoice::Cpu;
+        let alone = ScanEngine::new(&plan.search, engine_of(&plan)).unwrap();
+        let alone = by(&plan.search, &alone).unwrap();
+        assert_eq!(taken_over.rotations, alone.rotations);
+        assert_eq!(taken_over.peaks, alone.peaks);
+        assert!(!alone.peaks.is_empty());
     }
 }

@@ -355,16 +355,19 @@ impl<T: Real> Receptor<T> {
             }
             self.forward
                 .transform(&inside, &weights, &mut work, &mut field);
-            for (b, spectrum) in spectra.iter_mut().enumerate() {
-                let Some(table) = plan.coupling(fold, (a, b)) else {
-                    continue;
-                };
-                modes.for_each(|mode, w, _| {
-                    let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
-                    let factor = T::of(table.value(length)[0]);
-                    spectrum[mode] = spectrum[mode] + field[mode].scale(factor);
+            spectra
+                .par_iter_mut()
+                .enumerate()
+                .for_each(|(b, spectrum)| {
+                    let Some(table) = plan.coupling(fold, (a, b)) else {
+                        return;
+                    };
+                    modes.for_each(|mode, w, _| {
+                        let length = (w[0] * w[0] + w[1] * w[1] + w[2] * w[2]).sqrt();
+                        let factor = T::of(table.value(length)[0]);
+                        spectrum[mode] = spectrum[mode] + field[mode].scale(factor);
+                    });
                 });
-            }
         }
         spectra
     }
