@@ -599,7 +599,8 @@ pub fn molecule_points(ligand: &Molecule) -> Vec<[f64; 3]> {
     }
 }
 
-#[cfg(all(test, feature = "gpu"))]
+#[cfg(test)]
+#[cfg(feature = "gpu")]
 mod tests {
     use super::*;
     use crate::dock::plan::plan;
