@@ -607,18 +607,9 @@ mod tests {
     use crate::options::{DockOptions, EngineChoice};
     use crate::priors::residue_roles::tests::peptide;
     use crate::search::plan::SearchPlan;
-    use knotdock_scoring::Precision;
-    use knotdock_scoring::engine::{CpuEngine, choose_rank};
 
-    fn engine_of(plan: &DockPlan) -> CpuEngine {
-        let engine = &plan.search.engine;
-        let (receptor, ligand) = (&plan.receptor, &plan.ligand);
-        let spectra =
-            ReceptorSpectra::new(engine, receptor, ligand, Quantity::Score, Precision::Single);
-        choose_rank(engine, &spectra, ligand, &plan.search.rotations.coarse).engine
-    }
-
-    /// A card that is lost after some rotations: with `auto` the cores search all of them, with `gpu` it is an error.
+    /// A card that is lost after a search: in the next one the cores search all rotations with `auto`; with `gpu` it is an
+    /// error.
     #[test]
     fn cores_take_over_from_a_card_that_is_lost() {
         let options = DockOptions::default().changed(|options| {
@@ -627,8 +618,8 @@ mod tests {
             options.machine.threads = 1.into();
         });
         let mut plan = plan(&peptide(0.0), &peptide(4.0), &options).unwrap();
-        let engine = match ScanEngine::new(&plan.search, engine_of(&plan)) {
-            Ok(engine) => engine,
+        let engine = match Prepared::new(&plan, &NoProgress) {
+            Ok(prepared) => prepared.engine,
             Err(error) => {
                 let needed = std::env::var_os("KNOTDOCK_NEEDS_GPU").is_some();
                 assert!(!needed, "{error}");
@@ -650,7 +641,7 @@ mod tests {
         let taken_over = by(&plan.search, &engine).unwrap();
         assert!(engine.failure().is_some() && engine.adapter().is_none());
         plan.search.device = EngineChoice::Cpu;
-        let alone = ScanEngine::new(&plan.search, engine_of(&plan)).unwrap();
+        let alone = Prepared::new(&plan, &NoProgress).unwrap().engine;
         let alone = by(&plan.search, &alone).unwrap();
         assert_eq!(taken_over.rotations, alone.rotations);
         assert_eq!(taken_over.peaks, alone.peaks);
