@@ -1,5 +1,5 @@
-// Opens pages, each with the output of a notebook's cell, and checks that its view appears: an isolated frame that asks
-// nothing of the network and reports nothing to the console.
+// Opens pages, each with the output of a notebook's cell, and checks that its view appears, though the cell may be hidden
+// at first: an isolated frame that asks nothing of the network and reports nothing to the console.
 //     node cell.mjs PAGE...
 
 import assert from "node:assert/strict";
@@ -11,6 +11,9 @@ for (const name of process.argv.slice(2)) {
   const address = pathToFileURL(name).href;
   await page.goto(address);
   const frame = page.frames()[1];
+  // Frames that nobody sees are not drawn, so they are not asked each time that they are.
+  await frame.waitForFunction(() => window.$3Dmol !== undefined, null, { timeout: 20000, polling: 100 });
+  await page.evaluate(() => document.querySelectorAll("[hidden]").forEach((cell) => { cell.hidden = false; }));
   await frame.waitForFunction(() => window.knotdock !== undefined, null, { timeout: 20000 });
   const colours = await frame.evaluate(async () => {
     const image = new Image();

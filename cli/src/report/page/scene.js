@@ -168,8 +168,19 @@ function makeScene(root, data) {
   };
 }
 
-/** Calls `show` once the library of the view is there: at once if the page holds it, else when its button is pressed. */
-async function withLibrary(ids, show) {
+/** Calls `act` once an element has a size: none has in a hidden tab or cell. */
+function onceSized(element, act) {
+  const isSized = () => element.clientWidth > 0 && element.clientHeight > 0;
+  if (isSized()) act();
+  else new ResizeObserver((_, watcher) => { if (isSized()) { watcher.disconnect(); act(); } }).observe(element);
+}
+
+/**
+ * Calls `makeView` once the library of the view is there and the view has a size: at once if the page holds it, else when
+ * its button is pressed.
+ */
+async function withLibrary(ids, makeView) {
+  const show = () => onceSized(byId("scene"), makeView);
   const hide = (on) => ids.map(byId).forEach((element) => { (element.closest("label") ?? element).hidden = on; });
   const script = await unpacked("viewer");
   if (script !== null) {
