@@ -45,7 +45,7 @@ impl Block {
     #[inline(always)]
     fn squares<S: Simd>(&self, simd: S, x: &[S::f64s; 3]) -> [f64; LANES] {
         let mut squares = [0.0; LANES];
-        let [xs, ys, zs] = self.positions.each_ref().map(|own| vectors::<S>(own));
+        let [xs, ys, zs] = by_axis::<S, LANES>(&self.positions);
         for (index, square) in vectors_mut::<S>(&mut squares).iter_mut().enumerate() {
             let [x, y, z] = [
                 simd.sub_f64s(x[0], xs[index]),
@@ -102,8 +102,10 @@ impl Boxes {
     fn near<S: Simd>(&self, simd: S, x: &[S::f64s; 3], limit: f64) -> u32 {
         let mut squares = [0.0; GROUP];
         let zero = simd.splat_f64s(0.0);
-        let lows = self.low.each_ref().map(|own| vectors::<S>(own));
-        let highs = self.high.each_ref().map(|own| vectors::<S>(own));
+        let (lows, highs) = (
+            by_axis::<S, GROUP>(&self.low),
+            by_axis::<S, GROUP>(&self.high),
+        );
         for (index, square) in vectors_mut::<S>(&mut squares).iter_mut().enumerate() {
             let mut gaps = [zero; 3];
             for axis in 0..3 {
@@ -194,7 +196,8 @@ impl Blocks {
         let (index, lane) = (point as usize / LANES, point as usize % LANES);
         debug_assert!(index < self.blocks.len());
         self.blocks.get(index).map_or([f64::INFINITY; 3], |block| {
-            block.positions.map(|of| of[lane])
+            let [x, y, z] = &block.positions;
+            [x[lane], y[lane], z[lane]]
         })
     }
 
@@ -207,7 +210,7 @@ impl Blocks {
     #[inline(always)]
     fn visit_blocks<S: Simd>(&self, simd: S, x: &[f64; 3], reach: f64, mut visit: impl FnMut(u32)) {
         let square_reach = reach * reach;
-        let everywhere = x.map(|x| simd.splat_f64s(x));
+        let everywhere = splat(simd, x);
         for (boxes, first) in self.above.iter().zip((0..).step_by(GROUP)) {
             let mut groups = boxes.near(simd, &everywhere, square_reach);
             while groups != 0 {
@@ -239,7 +242,7 @@ impl Blocks {
         if self.excludes(x, reach) {
             return;
         }
-        let everywhere = x.map(|x| simd.splat_f64s(x));
+        let everywhere = splat(simd, x);
         near.clear();
         self.visit_blocks(
             simd,
@@ -264,7 +267,7 @@ impl Blocks {
         near: &mut NearPoints,
         mut visit: impl FnMut(&NearPoints),
     ) {
-        let everywhere = x.map(|x| simd.splat_f64s(x));
+        let everywhere = splat(simd, x);
         near.clear();
         for &index in blocks {
             self.add_near(simd, index, (&everywhere, reach), near, &mut visit);
@@ -423,7 +426,11 @@ fn sorted<S: Simd>(simd: S, values: [f64; HALF], mask: usize) -> [f64; HALF] {
         return pulp::cast(sorted);
     }
     let _ = (simd, halves);
-    lanes.map(|lane| values[lane as usize % HALF])
+    let mut sorted = [0.0; HALF];
+    for (to, &lane) in sorted.iter_mut().zip(lanes) {
+        *to = values[lane as usize % HALF];
+    }
+    sorted
 }
 
 /// Points within reach of another.
@@ -473,7 +480,9 @@ impl NearPoints {
             let mask = below(simd, *half, square_reach);
             let from = self.count.min(CAPACITY - HALF);
             self.squares[from..from + HALF].copy_from_slice(&sorted(simd, *half, mask));
-            self.points[from..from + HALF].copy_from_slice(&FRONT[mask].0.map(|lane| first + lane));
+            for (to, lane) in self.points[from..from + HALF].iter_mut().zip(FRONT[mask].0) {
+                *to = first + lane;
+            }
             self.count = from + mask.count_ones() as usize;
         }
     }
@@ -512,6 +521,24 @@ impl NearPoints {
 pub(crate) fn vectors<S: Simd>(values: &[f64]) -> &[S::f64s] {
     const { assert!(S::F64_LANES <= 4, "longer vectors would leave numbers out") };
     S::as_simd_f64s(values).0
+}
+
+// Written out, unlike `map` of arrays: its closures are not inlined, and have no wide registers.
+
+/// [`vectors`] of each axis.
+#[inline(always)]
+fn by_axis<S: Simd, const N: usize>([x, y, z]: &[[f64; N]; 3]) -> [&[S::f64s]; 3] {
+    [vectors::<S>(x), vectors::<S>(y), vectors::<S>(z)]
+}
+
+/// A place in every lane.
+#[inline(always)]
+fn splat<S: Simd>(simd: S, [x, y, z]: &[f64; 3]) -> [S::f64s; 3] {
+    [
+        simd.splat_f64s(*x),
+        simd.splat_f64s(*y),
+        simd.splat_f64s(*z),
+    ]
 }
 
 /// Four, eight or sixteen numbers as vectors to write to.

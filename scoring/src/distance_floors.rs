@@ -80,7 +80,7 @@ impl DistanceFloors {
     fn cell(&self, place: &Vector3<f64>) -> Option<usize> {
         let at = (place - self.low) * self.per_unit;
         let inside = (0..3).all(|axis| at[axis] >= 0.0 && at[axis] < self.counts[axis] as f64);
-        let [x, y, z] = [0, 1, 2].map(|axis| at[axis] as usize);
+        let [x, y, z] = [at.x as usize, at.y as usize, at.z as usize];
         inside.then_some((x * self.counts[1] + y) * self.counts[2] + z)
     }
 

@@ -14,12 +14,13 @@ use crate::rigid_move::PoseGradient;
 use crate::se3::Pose;
 use crate::terms::effect::Effect;
 use crate::transform::modes::{ModeSet, place};
-use crate::transform::spreading::{MAX_WIDTH, SpreadingKernel};
+use crate::transform::spreading::SpreadingKernel;
 use crate::transform::{Real, fast_size};
-use crate::vectorized::vectorize;
+use crate::vectorized::with_simd;
 use knotdock_structures::Knots;
 use nalgebra::{Rotation3, Vector3};
 use num_complex::Complex;
+use pulp::Simd;
 use realfft::ComplexToReal;
 use rustfft::Fft;
 use std::collections::{BTreeMap, BTreeSet};
@@ -31,7 +32,7 @@ const OVERSAMPLING: f64 = 1.5;
 /// within 2e-3 of that per Å (scoring/tests/potential_grid.rs).
 const WIDTH: usize = 6;
 /// Lanes of the innermost loop, at least `WIDTH`.
-const LANES: usize = 8;
+const LANES: usize = crate::blocks::LANES;
 
 /// A ligand knot relative to the ligand's centre (Å), with its weight for every grid that it sees.
 type GridKnot = (Vector3<f64>, Vec<(usize, f64)>);
@@ -111,11 +112,15 @@ impl PotentialGrid {
 
     /// Score of a pose and its gradient, per Å and per radian about the ligand's centre.
     pub fn gradient(&self, pose: &Pose) -> (f64, PoseGradient) {
-        vectorize!(self.gradient_inline(pose))
+        let grid = self;
+        with_simd!(
+            <'a>(grid: &'a PotentialGrid, pose: &'a Pose) -> (f64, PoseGradient),
+            |simd| grid.gradient_inline(simd, pose)
+        )
     }
 
     #[inline(always)]
-    fn gradient_inline(&self, pose: &Pose) -> (f64, PoseGradient) {
+    fn gradient_inline<S: Simd>(&self, simd: S, pose: &Pose) -> (f64, PoseGradient) {
         let rotation = pose.rotation.to_rotation_matrix();
         let center = rotation * self.ligand_center + pose.translation - self.receptor_center;
         let (rotation, center) = (self.frame * rotation, self.frame * center);
@@ -127,7 +132,7 @@ impl PotentialGrid {
             if (0..3).any(|axis| x[axis].abs() > self.limit[axis]) {
                 continue;
             }
-            let (value, force) = self.at(&x, weights);
+            let (value, force) = self.at(simd, &x, weights);
             score += value;
             gradient.force += force;
             gradient.torque += arm.cross(&force);
@@ -139,55 +144,83 @@ impl PotentialGrid {
 
     /// Weighted potential and its gradient (per Å) at a point relative to the receptor's middle.
     #[inline(always)]
-    fn at(&self, x: &Vector3<f64>, weights: &[(usize, f64)]) -> (f64, Vector3<f64>) {
+    fn at<S: Simd>(
+        &self,
+        simd: S,
+        x: &Vector3<f64>,
+        weights: &[(usize, f64)],
+    ) -> (f64, Vector3<f64>) {
         let [mx, my, mz] = self.size;
-        let mut values = [[0.0f32; MAX_WIDTH]; 3];
-        let mut slopes = [[0.0f32; MAX_WIDTH]; 3];
-        let first = [0, 1, 2].map(|axis| {
+        let mut values = [[0.0f32; LANES]; 3];
+        let mut slopes = [[0.0f32; LANES]; 3];
+        let mut first = [0; 3];
+        for axis in 0..3 {
             let u = x[axis] * self.cells_per_length[axis] + self.center[axis];
-            self.kernel
-                .place_with_slope(u, &mut values[axis], &mut slopes[axis])
-        });
-        let z = first[2].rem_euclid(mz as i64) as usize;
+            let kernel = &self.kernel;
+            first[axis] = kernel.place_with_slope(u, &mut values[axis], &mut slopes[axis]);
+        }
+        let planes = wrapped(first[0], mx);
+        let rows = wrapped(first[1], my);
+        let [z, ..] = wrapped(first[2], mz);
         let mut score = 0.0;
         let mut force = Vector3::zeros();
         for &(grid, weight) in weights {
             let grid = &self.grids[grid];
             // Sums over x and y of the rows: plain, with the slope along x, with the slope along y.
-            let mut sums = [[0.0f32; LANES]; 3];
-            for ix in 0..WIDTH {
-                let plane = (first[0] + ix as i64).rem_euclid(mx as i64) as usize * my;
-                for iy in 0..WIDTH {
-                    let row = (plane + (first[1] + iy as i64).rem_euclid(my as i64) as usize)
-                        * self.stride
-                        + z;
-                    let Some(row) = grid.get(row..row + LANES) else {
+            let [mut plain, mut along_x, mut along_y] = [[0.0f32; LANES]; 3];
+            for (ix, plane) in planes.iter().enumerate() {
+                for (iy, row) in rows.iter().enumerate() {
+                    let row = (plane * my + row) * self.stride + z;
+                    let Some(row) = grid.get(row..).and_then(|rest| rest.first_chunk()) else {
                         debug_assert!(false, "a window beyond the grid");
                         continue;
                     };
-                    let plain = values[0][ix] * values[1][iy];
-                    let along_x = slopes[0][ix] * values[1][iy];
-                    let along_y = values[0][ix] * slopes[1][iy];
-                    for lane in 0..LANES {
-                        sums[0][lane] += plain * row[lane];
-                        sums[1][lane] += along_x * row[lane];
-                        sums[2][lane] += along_y * row[lane];
-                    }
+                    let row: &[f32; LANES] = row;
+                    add_scaled(simd, &mut plain, values[0][ix] * values[1][iy], row);
+                    add_scaled(simd, &mut along_x, slopes[0][ix] * values[1][iy], row);
+                    add_scaled(simd, &mut along_y, values[0][ix] * slopes[1][iy], row);
                 }
             }
-            let dot = |sum: &[f32; LANES], with: &[f32; MAX_WIDTH]| -> f64 {
+            let dot = |sum: &[f32; LANES], with: &[f32; LANES]| -> f64 {
                 (0..WIDTH)
                     .map(|lane| f64::from(sum[lane] * with[lane]))
                     .sum()
             };
-            score += weight * dot(&sums[0], &values[2]);
+            score += weight * dot(&plain, &values[2]);
             force += Vector3::new(
-                weight * dot(&sums[1], &values[2]) * self.cells_per_length[0],
-                weight * dot(&sums[2], &values[2]) * self.cells_per_length[1],
-                weight * dot(&sums[0], &slopes[2]) * self.cells_per_length[2],
+                weight * dot(&along_x, &values[2]) * self.cells_per_length[0],
+                weight * dot(&along_y, &values[2]) * self.cells_per_length[1],
+                weight * dot(&plain, &slopes[2]) * self.cells_per_length[2],
             );
         }
         (score, force)
+    }
+}
+
+/// Numbers of the points of a window that begins at `first` on a periodic axis.
+#[inline(always)]
+fn wrapped(first: i64, size: usize) -> [usize; WIDTH] {
+    let mut at = [first.rem_euclid(size as i64) as usize; WIDTH];
+    for point in 1..WIDTH {
+        let next = at[point - 1] + 1;
+        at[point] = if next == size { 0 } else { next };
+    }
+    at
+}
+
+/// Adds a multiple of a row. Vectors are named: left to itself the compiler takes the lanes one by one.
+#[inline(always)]
+fn add_scaled<S: Simd>(simd: S, sum: &mut [f32; LANES], factor: f32, row: &[f32; LANES]) {
+    const {
+        assert!(
+            S::F32_LANES <= LANES,
+            "longer vectors would leave numbers out"
+        )
+    };
+    let factor = simd.splat_f32s(factor);
+    let (sums, rows) = (S::as_mut_simd_f32s(sum).0, S::as_simd_f32s(row).0);
+    for (sum, row) in sums.iter_mut().zip(rows) {
+        *sum = simd.add_f32s(*sum, simd.mul_f32s(factor, *row));
     }
 }
 

@@ -56,6 +56,21 @@ pub(crate) fn squared_distance(a: [f64; 3], b: [f64; 3]) -> f64 {
     dot(away, away)
 }
 
+/// Squared distance from a point to a box, zero within it; axes of the box beyond the third do not count.
+///
+/// Written out: closures over arrays are not inlined, and searches of trees spend most of their time here.
+#[inline]
+pub(crate) fn squared_distance_to_box<const N: usize>(
+    low: &[f64; N],
+    high: &[f64; N],
+    point: [f64; 3],
+) -> f64 {
+    let x = (low[0] - point[0]).max(point[0] - high[0]).max(0.0);
+    let y = (low[1] - point[1]).max(point[1] - high[1]).max(0.0);
+    let z = (low[2] - point[2]).max(point[2] - high[2]).max(0.0);
+    x * x + y * y + z * z
+}
+
 /// Order of points by x, then y, then z.
 pub(crate) fn compare(a: [f64; 3], b: [f64; 3]) -> Ordering {
     let pairs = a.iter().zip(&b);

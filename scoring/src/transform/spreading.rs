@@ -78,39 +78,32 @@ impl<T: Real> SpreadingKernel<T> {
     }
 
     /// Window values at the `width` grid points from ceil(u - width/2) on, for a knot at u in cells; returns the first
-    /// point.
+    /// point. There are at least `width` lanes; those beyond are zero.
     #[inline(always)]
-    pub fn place(&self, u: f64, values: &mut [T; MAX_WIDTH]) -> i64 {
-        let low = u - 0.5 * self.width as f64;
-        let first = low.ceil();
-        let x = T::of(2.0 * (first - low) - 1.0);
-        let mut powers = self.coefficients.iter().rev();
-        if let Some(last) = powers.next() {
-            *values = *last;
-        }
-        for power in powers {
-            for point in 0..MAX_WIDTH {
+    pub fn place<const LANES: usize>(&self, u: f64, values: &mut [T; LANES]) -> i64 {
+        let (first, x) = self.first(u);
+        *values = [T::zero(); LANES];
+        for power in self.powers::<LANES>() {
+            for point in 0..LANES {
                 values[point] = values[point] * x + power[point];
             }
         }
-        first as i64
+        first
     }
 
     /// As [`Self::place`], with the derivatives of the values with respect to u, per cell.
     #[inline(always)]
-    pub fn place_with_slope(
+    pub fn place_with_slope<const LANES: usize>(
         &self,
         u: f64,
-        values: &mut [T; MAX_WIDTH],
-        slopes: &mut [T; MAX_WIDTH],
+        values: &mut [T; LANES],
+        slopes: &mut [T; LANES],
     ) -> i64 {
-        let low = u - 0.5 * self.width as f64;
-        let first = low.ceil();
-        let x = T::of(2.0 * (first - low) - 1.0);
-        *values = [T::zero(); MAX_WIDTH];
-        *slopes = [T::zero(); MAX_WIDTH];
-        for power in self.coefficients.iter().rev() {
-            for point in 0..MAX_WIDTH {
+        let (first, x) = self.first(u);
+        *values = [T::zero(); LANES];
+        *slopes = [T::zero(); LANES];
+        for power in self.powers::<LANES>() {
+            for point in 0..LANES {
                 slopes[point] = slopes[point] * x + values[point];
                 values[point] = values[point] * x + power[point];
             }
@@ -120,7 +113,24 @@ impl<T: Real> SpreadingKernel<T> {
         for slope in slopes.iter_mut() {
             *slope = *slope * minus_two;
         }
-        first as i64
+        first
+    }
+
+    /// The window's first point for a knot at u in cells, and the variable of the polynomials.
+    #[inline(always)]
+    fn first(&self, u: f64) -> (i64, T) {
+        let low = u - 0.5 * self.width as f64;
+        let first = low.ceil();
+        (first as i64, T::of(2.0 * (first - low) - 1.0))
+    }
+
+    /// Coefficients of the first points, the highest power first.
+    #[inline(always)]
+    fn powers<const LANES: usize>(&self) -> impl Iterator<Item = &[T; LANES]> {
+        const { assert!(LANES <= MAX_WIDTH) };
+        assert!(self.width <= LANES, "a window wider than its lanes");
+        let powers = self.coefficients.iter().rev();
+        powers.filter_map(|power| power.first_chunk())
     }
 
     /// Transform of the window at `frequency` cycles per cell.

@@ -179,8 +179,9 @@ impl Block {
     #[inline(always)]
     pub fn gather(&self, read: &Read, arms: &Arms, score: &mut f64, gradient: &mut PoseGradient) {
         for (lane, &weight) in self.weights.iter().enumerate() {
-            let force = Vector3::from([0, 1, 2].map(|axis| weight * read.slope[axis][lane]));
-            let arm = Vector3::from([0, 1, 2].map(|axis| arms[axis][lane]));
+            let ([x, y, z], [ax, ay, az]) = (&read.slope, arms);
+            let force = weight * Vector3::new(x[lane], y[lane], z[lane]);
+            let arm = Vector3::new(ax[lane], ay[lane], az[lane]);
             *score += weight * read.value[lane];
             gradient.force += force;
             gradient.torque += arm.cross(&force);

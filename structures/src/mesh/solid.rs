@@ -8,7 +8,9 @@ use crate::mesh::triangle_mesh::{Mesh, centroid};
 use crate::mesh::triangle_tree::TriangleTree;
 use crate::mesh::{slivers, winding};
 use crate::neighbours::box_tree::{BoxNode, box_tree};
-use crate::vector::{along, bounds, cross, distance, dot, scale, squared_distance, subtract};
+use crate::vector::{
+    along, bounds, cross, distance, dot, scale, squared_distance, squared_distance_to_box, subtract,
+};
 
 /// A solid's coordinates y in those of its file: x = origin + unit y.
 ///
@@ -243,21 +245,18 @@ impl Solid {
             }
             return;
         }
-        let halves = [at + 1, node.second].map(|half| {
+        let bound = |half: usize| {
             let (low, high) = &self.boxes[half].known;
-            let beyond = [0, 1, 2].map(|axis| {
-                let outside = (low[axis] - point[axis]).max(point[axis] - high[axis]);
-                outside.max(0.0)
-            });
             // Rounding must not hide a triangle that is as near as its box.
-            (dot(beyond, beyond) * (1.0 - 1e-14), half)
-        });
-        let [a, b] = if halves[1].0 < halves[0].0 {
-            [halves[1], halves[0]]
-        } else {
-            halves
+            squared_distance_to_box(low, high, point) * (1.0 - 1e-14)
         };
-        for (bound, half) in [a, b] {
+        let (first, second) = ((bound(at + 1), at + 1), (bound(node.second), node.second));
+        let halves = if second.0 < first.0 {
+            [second, first]
+        } else {
+            [first, second]
+        };
+        for (bound, half) in halves {
             if bound < best.0 {
                 self.search_nearest(half, point, best);
             }
@@ -269,7 +268,7 @@ impl Solid {
 /// the other point is in decides (Ericson, Real-Time Collision Detection, 2005, section 5.1.5).
 pub(super) fn nearest_on([a, b, c]: [[f64; 3]; 3], point: [f64; 3]) -> [f64; 3] {
     let [ab, ac, bc] = [subtract(b, a), subtract(c, a), subtract(c, b)];
-    let [from_a, from_b, from_c] = [a, b, c].map(|corner| subtract(point, corner));
+    let [from_a, from_b, from_c] = [subtract(point, a), subtract(point, b), subtract(point, c)];
     let (ab_a, ac_a) = (dot(ab, from_a), dot(ac, from_a));
     if ab_a <= 0.0 && ac_a <= 0.0 {
         return a;

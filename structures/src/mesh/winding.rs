@@ -11,13 +11,19 @@ use std::f64::consts::PI;
 use crate::mesh::triangle_tree::TriangleTree;
 use crate::vector::{cross, dot, norm, subtract};
 
-/// Signed solid angle of a triangle seen from `point`, in steradians: above zero from behind, that is from inside (van
-/// Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30:2, 1983).
-fn solid_angle(corners: [[f64; 3]; 3], point: [f64; 3]) -> f64 {
-    let [a, b, c] = corners.map(|corner| subtract(corner, point));
+/// A complex number, real part first, whose argument is half the signed solid angle of a triangle seen from `point`: above
+/// zero from behind, that is from inside (van Oosterom and Strackee, IEEE Transactions on Biomedical Engineering 30:2, 1983).
+#[inline]
+fn half_angle([a, b, c]: [[f64; 3]; 3], point: [f64; 3]) -> [f64; 2] {
+    let (a, b, c) = (subtract(a, point), subtract(b, point), subtract(c, point));
     let (la, lb, lc) = (norm(a), norm(b), norm(c));
-    let volume = dot(a, cross(b, c));
     let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
+    [below, dot(a, cross(b, c))]
+}
+
+/// Signed solid angle of a triangle seen from `point`, in steradians.
+fn solid_angle(corners: [[f64; 3]; 3], point: [f64; 3]) -> f64 {
+    let [below, volume] = half_angle(corners, point);
     2.0 * volume.atan2(below)
 }
 
@@ -27,10 +33,9 @@ const ON_TRIANGLE: f64 = 1e-10;
 /// Whether a point is on a triangle, to within rounding.
 fn is_on(corners: [[f64; 3]; 3], point: [f64; 3]) -> bool {
     let [a, b, c] = corners.map(|corner| subtract(corner, point));
-    let (la, lb, lc) = (norm(a), norm(b), norm(c));
-    let rounding = ON_TRIANGLE * la * lb * lc;
-    let below = la * lb * lc + dot(a, b) * lc + dot(b, c) * la + dot(c, a) * lb;
-    dot(a, cross(b, c)).abs() <= rounding && below <= rounding
+    let rounding = ON_TRIANGLE * norm(a) * norm(b) * norm(c);
+    let [below, volume] = half_angle(corners, point);
+    volume.abs() <= rounding && below <= rounding
 }
 
 /// Rounds of the inside test: a cluster counts as a dipole beyond this many times its radius, and the sum decides when
@@ -39,14 +44,37 @@ const ROUNDS: [(f64, f64); 2] = [(3.0, 0.1), (10.0, 0.01)];
 
 /// The winding number at `point`, every triangle summed.
 pub(crate) fn exact(tree: &TriangleTree, point: [f64; 3]) -> f64 {
-    solid_angles(tree.triangles(), point) / (4.0 * PI)
+    let angles = tree.triangles().iter();
+    let angles = angles.map(|&corners| solid_angle(corners, point));
+    angles.sum::<f64>() / (4.0 * PI)
 }
 
+/// Sizes of a product of complex numbers whose digits are all there.
+const IN_RANGE: std::ops::Range<f64> = 1e-200..1e200;
+
+/// The sum of the solid angles of triangles. Arguments add where complex numbers are multiplied, so one arctangent serves
+/// many of them.
 fn solid_angles(triangles: &[[[f64; 3]; 3]], point: [f64; 3]) -> f64 {
-    triangles
-        .iter()
-        .map(|&corners| solid_angle(corners, point))
-        .sum()
+    let (mut sum, mut turns) = (0.0, 0.0);
+    let [mut re, mut im] = [1.0f64, 0.0f64];
+    for &corners in triangles {
+        let [c, d] = half_angle(corners, point);
+        // Zero of a triangle that has a corner at the point: it has no argument.
+        if !IN_RANGE.contains(&((re.abs() + im.abs()) * (c.abs() + d.abs()))) {
+            sum += im.atan2(re) + d.atan2(c);
+            [re, im] = [1.0, 0.0];
+            continue;
+        }
+        let product = re * d + im * c;
+        // Beyond half a turn the argument of the product is a whole one off.
+        if im >= 0.0 && d >= 0.0 && product < 0.0 {
+            turns += 1.0;
+        } else if im < 0.0 && d < 0.0 && product >= 0.0 {
+            turns -= 1.0;
+        }
+        [re, im] = [re * c - im * d, product];
+    }
+    2.0 * (sum + im.atan2(re)) + 4.0 * PI * turns
 }
 
 /// The winding number at `point`, clusters farther than `far` times their radius as dipoles; `near` sees the
@@ -60,9 +88,9 @@ fn fast(
     let mut sum = 0.0;
     tree.visit(0, |node| {
         let away = subtract(node.center, point);
-        let distance = norm(away);
-        if distance > far * node.radius {
-            sum += dot(away, node.area_vector) / (distance * distance * distance);
+        let (square, reach) = (dot(away, away), far * node.radius);
+        if square > reach * reach {
+            sum += dot(away, node.area_vector) / (square * square.sqrt());
             return false;
         }
         if let Some(triangles) = tree.leaf(node) {
@@ -101,4 +129,39 @@ pub(crate) fn encloses(tree: &TriangleTree, point: [f64; 3]) -> Option<bool> {
         }
     }
     Some(exact(tree, point).abs() > 0.5)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::vector::{add, scale};
+
+    /// Triangles all about a point and about none, seen from near, far, a corner and a side.
+    #[test]
+    fn one_arctangent_says_what_many_do() {
+        let mut state = 1u32;
+        let mut part = || {
+            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
+            f64::from(state) / f64::from(u32::MAX) - 0.5
+        };
+        let mut point = || [part(), part(), part()];
+        for size in [1e-90, 1e-20, 1.0, 1e40] {
+            let triangles: Vec<_> = (0..40)
+                .map(|_| [point(), point(), point()].map(|corner| scale(corner, size)))
+                .collect();
+            let [a, b, _] = triangles[7];
+            let seen = [a, scale(add(a, b), 0.5), [0.0; 3], [9.0 * size, 0.0, 0.0]];
+            for from in (0..200).map(|_| scale(point(), size)).chain(seen) {
+                let angles = || triangles.iter().map(|&corners| solid_angle(corners, from));
+                for count in [1, 8, 40] {
+                    let found = solid_angles(&triangles[..count], from);
+                    let expected: f64 = angles().take(count).sum();
+                    let off = (found - expected).abs();
+                    // On a side either of its faces may be seen.
+                    let off = off.min((off - 4.0 * PI).abs());
+                    assert!(off < 1e-9, "{size} {count}: {found} {expected}");
+                }
+            }
+        }
+    }
 }

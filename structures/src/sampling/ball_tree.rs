@@ -2,7 +2,7 @@
 
 use crate::ball::{Ball, largest_first};
 use crate::neighbours::box_tree::{BoxNode, LEAF, box_tree};
-use crate::vector::{bounds, distance, dot};
+use crate::vector::{bounds, distance, squared_distance_to_box};
 
 /// A tree over balls of boxes in four dimensions, of their centres and radii.
 #[derive(Debug)]
@@ -15,17 +15,9 @@ type Node = BoxNode<([f64; 3], [f64; 3]), 4>;
 
 /// No ball of a node is nearer than this to `point`, in the sense of [`BallTree::distance`].
 fn bound(node: &Node, point: [f64; 3]) -> f64 {
-    let beyond = |low: &[f64], high: &[f64]| {
-        let beyond = [0, 1, 2].map(|axis| {
-            (low[axis] - point[axis])
-                .max(point[axis] - high[axis])
-                .max(0.0)
-        });
-        dot(beyond, beyond)
-    };
-    let centers = beyond(&node.low, &node.high).sqrt() - node.high[3];
+    let centers = squared_distance_to_box(&node.low, &node.high, point).sqrt() - node.high[3];
     let (low, high) = &node.known;
-    let balls = beyond(low, high);
+    let balls = squared_distance_to_box(low, high, point);
     if balls > 0.0 {
         centers.max(balls.sqrt())
     } else {
@@ -91,8 +83,9 @@ impl BallTree {
 
     /// The halves of a node with their bounds, the nearer one first.
     fn halves(&self, at: usize, point: [f64; 3]) -> [(usize, f64); 2] {
-        let halves = [at + 1, self.nodes[at].second];
-        let [a, b] = halves.map(|half| (half, bound(&self.nodes[half], point)));
+        let (first, second) = (at + 1, self.nodes[at].second);
+        let a = (first, bound(&self.nodes[first], point));
+        let b = (second, bound(&self.nodes[second], point));
         if b.1 < a.1 { [b, a] } else { [a, b] }
     }
 

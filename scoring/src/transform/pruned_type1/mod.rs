@@ -238,7 +238,7 @@ impl<T: Real> Forward<T> {
         let stride = bz + MAX_WIDTH;
         let center = self.center();
         let scale = self.cells_per_length();
-        let mut values = [[T::zero(); MAX_WIDTH]; 3];
+        let mut values = [[T::zero(); LANES]; 3];
         for (point, weights) in points.iter().zip(weights.chunks_exact(self.components)) {
             let mut first = [0usize; 3];
             for axis in 0..3 {
@@ -247,8 +247,7 @@ impl<T: Real> Forward<T> {
                 debug_assert!(start >= 0 && start as usize + width <= self.block[axis]);
                 first[axis] = start.max(0) as usize;
             }
-            let mut z_values = [T::zero(); LANES];
-            z_values.copy_from_slice(&values[2][..LANES]);
+            let z_values = values[2];
             for (component, &weight) in weights.iter().enumerate() {
                 for (ix, &vx) in values[0][..width].iter().enumerate() {
                     let scaled = weight * vx;

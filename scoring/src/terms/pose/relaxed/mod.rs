@@ -221,7 +221,9 @@ impl Relaxation {
             |sums: &mut AtomSlope, atom, eight| {
                 let soft = self.soft(&atom.site, eight);
                 let [x, y, z] = &eight.between;
-                let [cx, cy, cz] = [x, y, z].map(|of| each(|lane| soft.stiffness[lane] * of[lane]));
+                let cx = each(|lane| soft.stiffness[lane] * x[lane]);
+                let cy = each(|lane| soft.stiffness[lane] * y[lane]);
+                let cz = each(|lane| soft.stiffness[lane] * z[lane]);
                 let products = [
                     (&soft.rise, x),
                     (&soft.rise, y),
@@ -244,7 +246,11 @@ impl Relaxation {
                 let contacts = total(&sums.contacts);
                 if contacts > 0.0 {
                     slope.contacts += contacts;
-                    let [gx, gy, gz, xx, xy, xz, yy, yz, zz] = sums.products.each_ref().map(total);
+                    let mut totals = [0.0; 9];
+                    for (to, lanes) in totals.iter_mut().zip(&sums.products) {
+                        *to = total(lanes);
+                    }
+                    let [gx, gy, gz, xx, xy, xz, yy, yz, zz] = totals;
                     let gradient = Vector3::new(gx, gy, gz);
                     let curvature = Matrix3::new(xx, xy, xz, xy, yy, yz, xz, yz, zz);
                     // Each body makes half of a rotation about the middle between their places.
