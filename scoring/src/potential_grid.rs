@@ -175,7 +175,6 @@ impl PotentialGrid {
                         debug_assert!(false, "a window beyond the grid");
                         continue;
                     };
-                    let row: &[f32; LANES] = row;
                     add_scaled(simd, &mut plain, values[0][ix] * values[1][iy], row);
                     add_scaled(simd, &mut along_x, slopes[0][ix] * values[1][iy], row);
                     add_scaled(simd, &mut along_y, values[0][ix] * slopes[1][iy], row);

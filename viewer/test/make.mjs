@@ -28,7 +28,9 @@ knotdock("dock", "large.obj", "small.obj", "--rotations", "60", "--sample-grid",
 knotdock("obstacle", "large.obj", "small.obj", "--grid", "2^9", "--cells", "24", "--report", "obstacle.html", "--viewer", library);
 const poses = [0, 5, 9, 20].map((x) => `1,0,0,0,${x},0,0\n`).join("");
 writeFileSync(path.join(folder, "places.csv"), `qw,qx,qy,qz,tx,ty,tz\n${poses}`);
-knotdock("collide", "large.obj", "small.obj", "--grid", "2^9", "--poses", "places.csv", "--report", "collide.html", "--viewer", library);
+const collide = ["large.obj", "small.obj", "--grid", "2^9", "--poses", "places.csv", "--report"];
+knotdock("collide", ...collide, "collide.html", "--viewer", library);
+knotdock("collide", ...collide, "bare_collide.html");
 // The same ligand twice, as two models.
 const atoms = readFileSync(pair[1], "utf8").split("\n").filter((line) => /^(ATOM|TER)/.test(line)).join("\n");
 writeFileSync(path.join(folder, "models.pdb"), `MODEL        1\n${atoms}\nENDMDL\nMODEL        2\n${atoms}\nENDMDL\nEND\n`);

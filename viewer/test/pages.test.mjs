@@ -72,11 +72,33 @@ test("the address and the checksum of the library are those of npm's package", a
   }
 });
 
+/** Lets the address of the library have a body. */
+const serve = (page, body) => page.route(/^https:/, (route) => route.fulfill({ body, contentType: "text/javascript", headers: { "access-control-allow-origin": "*" } }));
+
+test("a row of solids that is chosen before the library is there is shown once it is", async () => {
+  const { page, close } = await open(reports().bareCollide);
+  try {
+    const picture = () => page.evaluate(() => window.knotdock.picture());
+    const row = (number) => page.locator("#list-table tbody tr").nth(number);
+    await row(2).click();
+    await serve(page, library);
+    await page.click("#load-view");
+    await page.waitForSelector("#scene canvas");
+    const third = await picture();
+    await row(0).click();
+    assert.notEqual(await picture(), third);
+    await row(2).click();
+    assert.equal(await picture(), third);
+  } finally {
+    await close();
+  }
+});
+
 for (const [kind, body, works] of [["the library", library, true], ["another file", `${library} `, false]]) {
   test(`a pressed button asks for one file, and ${kind} is ${works ? "shown" : "refused"}`, async () => {
     const { page, requests, address, close } = await open(reports().bare);
     try {
-      await page.route(/^https:/, (route) => route.fulfill({ body, contentType: "text/javascript", headers: { "access-control-allow-origin": "*" } }));
+      await serve(page, body);
       await page.click("#load-view");
       if (works) {
         await page.waitForSelector("#scene canvas");

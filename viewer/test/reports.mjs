@@ -9,5 +9,5 @@ if (!folder) throw new Error("set REPORTS to the folder that test/make.mjs wrote
 export function reports() {
   const of = (directory) => path.resolve(folder, directory, "report.html");
   const page = (name) => path.resolve(folder, `${name}.html`);
-  return { collide: page("collide"), obstacle: page("obstacle"), models: page("models"), run: of("run"), bare: of("bare"), ring: of("ring"), solids: of("solids"), ensemble: of("ensemble"), batch: of("batch"), tradeoff: of("tradeoff") };
+  return { collide: page("collide"), bareCollide: page("bare_collide"), obstacle: page("obstacle"), models: page("models"), run: of("run"), bare: of("bare"), ring: of("ring"), solids: of("solids"), ensemble: of("ensemble"), batch: of("batch"), tradeoff: of("tradeoff") };
 }

@@ -134,50 +134,30 @@ pub(crate) fn encloses(tree: &TriangleTree, point: [f64; 3]) -> Option<bool> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::vector::{add, scale};
+    use proptest::array::uniform3;
+    use proptest::collection::vec;
+    use proptest::prelude::*;
 
-    /// Triangles all about a point and about none, seen from near, far, a corner and a side; rounded to quarters, points are
-    /// on many of their planes.
-    #[test]
-    fn one_arctangent_says_what_many_do() {
-        let mut state = 1u32;
-        let mut part = || {
-            state = state.wrapping_mul(1_664_525).wrapping_add(1_013_904_223);
-            f64::from(state) / f64::from(u32::MAX) - 0.5
-        };
-        for (size, rounded) in [
-            (1e-90, false),
-            (1e-20, false),
-            (1.0, false),
-            (1.0, true),
-            (1e40, true),
-        ] {
-            let mut point = || {
-                let point = [part(), part(), part()];
-                scale(
-                    if rounded {
-                        point.map(|x| (4.0 * x).round() / 4.0)
-                    } else {
-                        point
-                    },
-                    size,
-                )
-            };
-            let triangles: Vec<_> = (0..40).map(|_| [point(), point(), point()]).collect();
-            let [a, b, _] = triangles[7];
-            let seen = [a, scale(add(a, b), 0.5), [0.0; 3], [9.0 * size, 0.0, 0.0]];
-            for from in (0..200).map(|_| point()).chain(seen) {
-                for count in [1, 8, 40] {
-                    let triangles = &triangles[..count];
-                    let found = solid_angles(triangles, from);
-                    let angles = triangles.iter().map(|&corners| solid_angle(corners, from));
-                    let expected: f64 = angles.sum();
-                    assert!(
-                        (found - expected).abs() < 1e-9,
-                        "{size} {count}: {found} {expected}"
-                    );
-                }
-            }
+    /// Whole numbers put points on planes, sides and corners of triangles.
+    fn point() -> impl Strategy<Value = [f64; 3]> {
+        uniform3(prop_oneof![(-2i8..=2).prop_map(f64::from), -2.0..2.0f64])
+    }
+
+    proptest! {
+        #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::default() })]
+
+        #[test]
+        fn one_arctangent_says_what_many_do(
+            triangles in vec(uniform3(point()), 1..40),
+            from in point(),
+            size in prop::sample::select(vec![1e-90, 1e-20, 1.0, 1e40]),
+        ) {
+            let scaled = |point: [f64; 3]| point.map(|part| size * part);
+            let triangles: Vec<_> = triangles.iter().map(|corners| corners.map(scaled)).collect();
+            let from = scaled(from);
+            let found = solid_angles(&triangles, from);
+            let expected: f64 = triangles.iter().map(|&corners| solid_angle(corners, from)).sum();
+            prop_assert!((found - expected).abs() < 1e-9, "{found} {expected}");
         }
     }
 }
