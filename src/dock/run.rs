@@ -607,42 +607,70 @@ mod tests {
     use crate::options::{DockOptions, EngineChoice};
     use crate::priors::residue_roles::tests::peptide;
     use crate::search::plan::SearchPlan;
+    use std::sync::atomic::{AtomicU64, Ordering};
 
-    /// A card that is lost after a search: in the next one the cores search all rotations with `auto`; with `gpu` it is an
-    /// error.
+    /// Counts rotations, and loses the card as the first are done.
+    struct LosesCard<'a> {
+        engine: &'a ScanEngine,
+        counted: AtomicU64,
+    }
+
+    impl Progress for LosesCard<'_> {
+        fn advance(&self, by: u64) {
+            self.counted.fetch_add(by, Ordering::Relaxed);
+            self.engine.gpu.as_ref().unwrap().lose_device();
+        }
+    }
+
+    /// A card that is lost amid a search: with `auto` the cores search all rotations, and each counts once; with `gpu` it is
+    /// an error, and so is the next search.
     #[test]
     fn cores_take_over_from_a_card_that_is_lost() {
         let options = DockOptions::default().changed(|options| {
             options.search.engine = EngineChoice::Gpu;
-            options.search.rotations = 24;
+            options.search.rotations = 48;
             options.machine.threads = 1.into();
         });
         let mut plan = plan(&peptide(0.0), &peptide(4.0), &options).unwrap();
-        let engine = match Prepared::new(&plan, &NoProgress) {
-            Ok(prepared) => prepared.engine,
-            Err(error) => {
-                let needed = std::env::var_os("KNOTDOCK_NEEDS_GPU").is_some();
-                assert!(!needed, "{error}");
-                println!("not tried: {error}");
-                return;
-            }
-        };
+        if let Err(error) = Prepared::new(&plan, &NoProgress) {
+            let needed = std::env::var_os("KNOTDOCK_NEEDS_GPU").is_some();
+            assert!(!needed, "{error}");
+            println!("not tried: {error}");
+            return;
+        }
+        // Small batches, so that there are some after the first.
+        plan.search.graphics_bytes = 1 << 16;
+        while Prepared::new(&plan, &NoProgress).is_err() {
+            plan.search.graphics_bytes *= 2;
+        }
+        let prepared = |plan: &DockPlan| Prepared::new(plan, &NoProgress).unwrap().engine;
         let groups = plan.search.rotations.groups();
-        let by = |search: &SearchPlan, engine: &ScanEngine| {
-            scan(search, engine, &groups, 20, None, &NoProgress)
+        let by = |search: &SearchPlan, engine: &ScanEngine, progress: &dyn Progress| {
+            scan(search, engine, &groups, 20, None, progress)
         };
-        assert!(by(&plan.search, &engine).is_ok());
-        assert!(engine.adapter().is_some());
-        engine.gpu.as_ref().unwrap().lose_device();
-        let error = by(&plan.search, &engine).err().unwrap();
-        assert!(error.to_string().contains("--engine gpu"), "{error}");
-        assert!(engine.failure().is_none());
+        let losing = |engine| LosesCard {
+            engine,
+            counted: AtomicU64::new(0),
+        };
+
+        let engine = prepared(&plan);
+        let in_flight = engine.adapter().unwrap().rotations_in_flight;
+        assert!(in_flight <= 24, "{in_flight}");
+        assert!(by(&plan.search, &engine, &NoProgress).is_ok());
+        for progress in [&losing(&engine) as &dyn Progress, &NoProgress] {
+            let error = by(&plan.search, &engine, progress).err().unwrap();
+            assert!(error.to_string().contains("--engine gpu"), "{error}");
+            assert!(engine.failure().is_none());
+        }
+
+        let engine = prepared(&plan);
         plan.search.device = EngineChoice::Auto;
-        let taken_over = by(&plan.search, &engine).unwrap();
+        let progress = losing(&engine);
+        let taken_over = by(&plan.search, &engine, &progress).unwrap();
         assert!(engine.failure().is_some() && engine.adapter().is_none());
+        assert_eq!(progress.counted.into_inner(), 48);
         plan.search.device = EngineChoice::Cpu;
-        let alone = Prepared::new(&plan, &NoProgress).unwrap().engine;
-        let alone = by(&plan.search, &alone).unwrap();
+        let alone = by(&plan.search, &prepared(&plan), &NoProgress).unwrap();
         assert_eq!(taken_over.rotations, alone.rotations);
         assert_eq!(taken_over.peaks, alone.peaks);
         assert!(!alone.peaks.is_empty());

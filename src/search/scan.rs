@@ -3,7 +3,7 @@
 #[cfg(feature = "gpu")]
 use crate::options::EngineChoice;
 use crate::pose_space::rotations::RotationGroup;
-use crate::progress::Progress;
+use crate::progress::{Interruption, Progress};
 use crate::search::allowed::Region;
 use crate::search::deadline::Deadline;
 use crate::search::plan::SearchPlan;
@@ -18,7 +18,7 @@ use knotdock_scoring::grid_turn::GridTurn;
 use knotdock_scoring::peaks::{Peak, PeakLimits};
 use knotdock_structures::Error;
 use rayon::prelude::*;
-use std::sync::atomic::{AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicU64, AtomicUsize, Ordering};
 use std::time::Instant;
 
 /// Images of a rotation at the most.
@@ -49,7 +49,11 @@ pub(crate) fn scan(
 ) -> Result<Scanned, Error> {
     // No list grows beyond all peaks that there are.
     let most = most.min(plan.rotations.images * groups.len() * plan.per_rotation);
-    let at_least = |least| scan_on_cores(plan, engine, groups, (most, least), deadline, progress);
+    let shown = AtomicU64::new(0);
+    let at_least = |least| {
+        let progress = Attempt::new(progress, &shown);
+        scan_on_cores(plan, engine, groups, (most, least), deadline, &progress)
+    };
     // At most rotations, the restraints may allow only overlapping poses. Poses that score less than the two bodies apart
     // are then kept only if there are no others.
     let on_cores = || {
@@ -60,7 +64,7 @@ pub(crate) fn scan(
     #[cfg(feature = "gpu")]
     let mut scanned = match &engine.gpu {
         Some(gpu) if engine.failure().is_none() => {
-            match scan_on_card(plan, gpu, groups, most, progress) {
+            match scan_on_card(plan, gpu, groups, most, &Attempt::new(progress, &shown)) {
                 Err(error) if plan.device == EngineChoice::Auto => {
                     progress.go_on()?;
                     engine.leave_card(&error);
@@ -80,6 +84,39 @@ pub(crate) fn scan(
     peaks.truncate(most);
     peaks.shrink_to_fit();
     Ok(scanned)
+}
+
+/// Progress of one attempt at rotations that may be searched again: each counts once.
+struct Attempt<'a> {
+    progress: &'a dyn Progress,
+    done: AtomicU64,
+    /// The most that an attempt has done.
+    shown: &'a AtomicU64,
+}
+
+impl<'a> Attempt<'a> {
+    fn new(progress: &'a dyn Progress, shown: &'a AtomicU64) -> Self {
+        let done = AtomicU64::new(0);
+        Self {
+            progress,
+            done,
+            shown,
+        }
+    }
+}
+
+impl Progress for Attempt<'_> {
+    fn advance(&self, by: u64) {
+        let done = self.done.fetch_add(by, Ordering::Relaxed) + by;
+        let before = self.shown.fetch_max(done, Ordering::Relaxed);
+        if done > before {
+            self.progress.advance(done - before);
+        }
+    }
+
+    fn go_on(&self) -> Result<(), Interruption> {
+        self.progress.go_on()
+    }
 }
 
 /// Peaks of the graphics processor, the best `most` among them.
