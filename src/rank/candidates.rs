@@ -10,7 +10,7 @@ use knotdock_scoring::terms::pose::{Rescorer, TermValues, Workspace};
 use rayon::prelude::*;
 
 /// Most poses that a thread rescores at once: those in contact take longer than others.
-const RESCORED_TOGETHER: usize = 16;
+const RESCORED_TOGETHER: usize = 4;
 
 /// A pose that may become a row.
 #[derive(Clone, Debug)]

@@ -33,7 +33,7 @@ const BALL_SCORED: u64 = 1 << 8;
 /// Bytes of an atom in the pose terms, and of their tables.
 const ATOM_SCORED: u64 = 640;
 const TERM_TABLES: u64 = 2 << 20;
-/// Bytes of an atom in a complex that is being written, with its line.
+/// Bytes of an atom in each complex that is being written, with its line.
 const ATOM_WRITTEN: u64 = 1 << 8;
 /// Bytes of a peak.
 const PEAK: u64 = size_of::<Peak>() as u64;
@@ -65,6 +65,8 @@ pub(super) struct Sizes {
     rank: usize,
     potential_grid: u64,
     atoms: u64,
+    /// Complexes that are written at once.
+    written: u64,
     /// Whether atoms are scored by pose terms.
     is_of_molecules: bool,
     /// Rotations of the set, and of the finer one.
@@ -119,6 +121,7 @@ impl Sizes {
             },
             engine: sizes,
             atoms,
+            written: options.machine.thread_count().min(options.output.write_top) as u64,
             is_of_molecules: scene.unit == LengthUnit::Angstrom,
             rotations: [rotations, finer],
             images: space.images(engine) as u64,
@@ -200,7 +203,10 @@ impl Sizes {
             ),
             (
                 "rank",
-                RANKED * self.poses + ATOM_WRITTEN * self.atoms + self.scorers() + threads,
+                RANKED * self.poses
+                    + ATOM_WRITTEN * self.atoms * self.written
+                    + self.scorers()
+                    + threads,
             ),
         ]
         .map(|(stage, own)| (stage, self.whole(own)))

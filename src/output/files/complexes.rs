@@ -3,7 +3,7 @@
 use crate::output::files::file_error;
 use knotdock_structures::Error;
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{
@@ -16,6 +16,7 @@ use crate::output::records::program::VERSION;
 use crate::output::tables::poses::PoseRow;
 use crate::pose_space::arrangement::Arrangement;
 use crate::refine::Refined;
+use rayon::prelude::*;
 
 /// A complex of a run.
 #[derive(Clone, Debug)]
@@ -32,11 +33,9 @@ pub struct Complex {
 /// # Errors
 /// [`Error`] for a row whose pose is not one of such a ring.
 pub fn complex(pair: &PosedPair) -> Result<Complex, Error> {
-    let placed = pair.placed(Path::new(""))?;
-    let placed: Vec<&Molecule> = placed.iter().collect();
-    let format = complex_format(&placed);
-    let mut text = Vec::new();
-    write_complex(&mut text, format, &placed, &pair.remarks()).map_err(Error::machine)?;
+    let folder = Path::new("");
+    let format = format_of(std::slice::from_ref(pair), folder)?;
+    let (text, _) = pair.text(format, folder)?;
     Ok(Complex {
         format,
         text: String::from_utf8(text).map_err(Error::machine)?,
@@ -104,6 +103,16 @@ impl<'a> PosedPair<'a> {
         Ok(placed)
     }
 
+    /// The complex as it is written to a file, and the names of its chains.
+    fn text(&self, format: Format, path: &Path) -> Result<(Vec<u8>, ChainMap), Error> {
+        let placed = self.placed(path)?;
+        let placed: Vec<&Molecule> = placed.iter().collect();
+        let mut text = Vec::new();
+        let chains = write_complex(&mut text, format, &placed, &self.remarks());
+        let chains = chains.map_err(|source| file_error::writing(path, source))?;
+        Ok((text, chains))
+    }
+
     /// The row with the pose that is written.
     fn written_row(&self) -> PoseRow {
         PoseRow {
@@ -147,19 +156,22 @@ pub fn write_complexes(
         None => format_of(pairs, folder)?,
     };
     let mut chains = None;
-    let mut names = Vec::new();
-    for pair in pairs {
-        let name = file_name(pair.row.rank, format.extension());
-        let placed = pair.placed(folder)?;
-        let path = folder.join(&name);
-        let written = write_new(&path, |mut file| {
-            let placed: Vec<&Molecule> = placed.iter().collect();
-            let map = write_complex(&mut file, format, &placed, &pair.remarks());
-            chains = Some(map?);
-            Ok(())
+    let name = |pair: &PosedPair| file_name(pair.row.rank, format.extension());
+    let names = pairs.iter().map(name).collect();
+    // As many texts at once as there are threads that make them.
+    for pairs in pairs.chunks(rayon::current_num_threads()) {
+        let texts = pairs.par_iter().map(|pair| {
+            let path = folder.join(name(pair));
+            pair.text(format, &path)
+                .map(|(text, chains)| (path, text, chains))
         });
-        written.map_err(|source| file_error::writing(&path, source))?;
-        names.push(name);
+        let texts: Vec<Result<(PathBuf, Vec<u8>, ChainMap), Error>> = texts.collect();
+        for made in texts {
+            let (path, text, map) = made?;
+            let written = write_new(&path, |file| file.write_all(&text));
+            written.map_err(|source| file_error::writing(&path, source))?;
+            chains = Some(map);
+        }
     }
     if chains.is_none() {
         let map = write_complex(&mut io::sink(), format, &unplaced, &[]);
@@ -171,9 +183,12 @@ pub fn write_complexes(
 /// The format that holds all of some complexes. Placed molecules are made for it and again for the files: all at once may
 /// not fit into the memory.
 pub(crate) fn format_of(pairs: &[PosedPair], folder: &Path) -> Result<Format, Error> {
-    for pair in pairs {
+    let formats = pairs.par_iter().map(|pair| {
         let placed = pair.placed(folder)?;
-        if complex_format(&placed.iter().collect::<Vec<_>>()) != Format::Pdb {
+        Ok(complex_format(&placed.iter().collect::<Vec<_>>()))
+    });
+    for format in formats.collect::<Vec<Result<Format, Error>>>() {
+        if format? != Format::Pdb {
             return Ok(Format::Mmcif);
         }
     }

@@ -13,8 +13,6 @@ use rayon::prelude::*;
 
 /// Poses that descend: the best of the run by the soft score.
 const DESCENDING: usize = 250;
-/// Poses that a thread lets descend at once.
-const TOGETHER: usize = 4;
 /// Places whose neighbourhood is tried, too: those of the best optima.
 const MAX_TRIED: usize = 20;
 /// Gain of the margin by that, at most but in rare cases, standard deviations (docs/research/defaults.md).
@@ -52,7 +50,7 @@ pub(crate) fn optima(
     let best = candidates.get(..DESCENDING).unwrap_or(candidates);
     let mut of_candidates: Vec<Option<Optimum>> = Vec::new();
     best.par_iter()
-        .with_max_len(TOGETHER)
+        .with_max_len(1)
         .map_init(PairList::default, |list, candidate| {
             fit.descend(&candidate.pose, list)
         })

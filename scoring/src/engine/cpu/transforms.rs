@@ -9,11 +9,13 @@ use crate::engine::plan::Plan;
 use crate::engine::receptor_spectra::{Factors, SpectrumList};
 use crate::grid_turn::GridTurn;
 use crate::transform::Real;
+use crate::transform::modes::Column;
 use crate::transform::pruned_type1::{Forward, ForwardWorkspace};
 use crate::vectorized::vectorize;
 use knotdock_structures::Knots;
 use nalgebra::{UnitQuaternion, Vector3};
 use num_complex::Complex;
+use rayon::prelude::*;
 use rustfft::Fft;
 use std::sync::Arc;
 
@@ -87,31 +89,40 @@ impl<T: Real> Transforms<T> {
         let zero = Complex::new(T::zero(), T::zero());
         let packing = Packing::new(&modes);
         let mut spectra = vec![Packet::zero(); rank * packing.count()];
-        let mut values = Vec::new();
-        for (index, column) in modes.columns.iter().enumerate() {
+        let mut rest = spectra.as_mut_slice();
+        let columns = modes.columns.iter().enumerate().map(|(index, column)| {
+            let count = packing.range(index, rank).len();
+            let (own, others) = std::mem::take(&mut rest).split_at_mut(count);
+            rest = others;
+            (column, own)
+        });
+        let columns: Vec<_> = columns.collect();
+        let fill = |values: &mut Vec<Complex<T>>,
+                    (column, packets): (&Column, &mut [Packet<T>])| {
             let outer = factors[1][column.ky.unsigned_abs() as usize]
                 * factors[2][column.kz as usize]
                 / modes.volume();
-            let range = packing.range(index, rank);
-            let half = packets_of_half(column);
+            let (up, down) = packets.split_at_mut(packets_of_half(column) * rank);
+            let side = column.kx_max as usize;
             for q in 0..rank {
                 values.clear();
-                values.extend((-column.kx_max..=column.kx_max).enumerate().map(|(i, k)| {
-                    let mut sum = zero;
-                    for (b, spectrum) in spectra_of.iter().enumerate() {
-                        sum = sum + spectrum[column.start + i].scale(T::of(combination[(b, q)]));
+                values.resize(2 * side + 1, zero);
+                for (b, spectrum) in spectra_of.iter().enumerate() {
+                    let share = T::of(combination[(b, q)]);
+                    for (sum, value) in values.iter_mut().zip(&spectrum[column.start..]) {
+                        *sum = *sum + value.scale(share);
                     }
-                    let factor = outer * factors[0][k.unsigned_abs() as usize];
-                    sum.scale(T::of(factor))
-                }));
-                let (up, down) = spectra[range.clone()].split_at_mut(half * rank);
-                let side = column.kx_max as usize;
+                }
+                for (value, k) in values.iter_mut().zip(-column.kx_max..) {
+                    *value = value.scale(T::of(outer * factors[0][k.unsigned_abs() as usize]));
+                }
                 for k in 0..=side {
                     up[k / LANES * rank + q].set(k % LANES, values[side + k]);
                     down[k / LANES * rank + q].set(k % LANES, values[side - k]);
                 }
             }
-        }
+        };
+        columns.into_par_iter().for_each_init(Vec::new, fill);
         let weights = (0..ligand.len())
             .flat_map(|j| (0..rank).map(move |q| (j, q)))
             .map(|(j, q)| T::of(coefficients[(j, q)]))

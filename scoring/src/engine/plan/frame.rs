@@ -8,6 +8,7 @@ use super::grid::Extents;
 use crate::so3::spiral_set;
 use knotdock_structures::Knots;
 use nalgebra::{Rotation3, UnitQuaternion, Vector3};
+use rayon::prelude::*;
 
 /// Frames that are tried: about 10 degrees apart, since turns of a box onto itself change nothing.
 const FRAMES: usize = 1024;
@@ -22,7 +23,7 @@ const SHARE_OF_EIGHT: f64 = 0.77;
 pub(super) fn best_frame(
     receptor: &Knots,
     extents: &Extents,
-    size: impl Fn(&Extents) -> Option<[usize; 3]>,
+    size: impl Fn(&Extents) -> Option<[usize; 3]> + Sync,
 ) -> Option<UnitQuaternion<f64>> {
     let outermost = outermost(receptor);
     let cost = |extents: &Extents| {
@@ -37,18 +38,24 @@ pub(super) fn best_frame(
         };
         Some((share * points, volume))
     };
-    let mut best = (cost(extents)?, None);
+    let least = cost(extents)?;
     // The axes in turn: (x, y, z) to (y, z, x).
     let cycle = UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(
         nalgebra::Matrix3::new(0.0, 1.0, 0.0, 0.0, 0.0, 1.0, 1.0, 0.0, 0.0),
     ));
-    for turned in spiral_set(8 * FRAMES).iter().step_by(8) {
-        for frame in [*turned, cycle * turned, cycle * cycle * turned] {
-            if let Some(found) = cost(&extents.turned(&outermost, frame))
-                && found < best.0
-            {
-                best = (found, Some(frame));
-            }
+    let turned = spiral_set(8 * FRAMES).into_iter().step_by(8);
+    let frames = turned.flat_map(|turned| [turned, cycle * turned, cycle * cycle * turned]);
+    let frames: Vec<UnitQuaternion<f64>> = frames.collect();
+    let costs = frames.par_iter();
+    let costs = costs.map(|&frame| cost(&extents.turned(&outermost, frame)));
+    let costs: Vec<Option<(f64, f64)>> = costs.collect();
+    // Of equal ones the first.
+    let mut best = (least, None);
+    for (&frame, found) in frames.iter().zip(costs) {
+        if let Some(found) = found
+            && found < best.0
+        {
+            best = (found, Some(frame));
         }
     }
     best.1
@@ -56,17 +63,22 @@ pub(super) fn best_frame(
 
 /// The knots that lie outermost along some directions: enough to compare boxes by.
 fn outermost(receptor: &Knots) -> Vec<[f64; 3]> {
-    let mut kept: Vec<[f64; 3]> = Vec::new();
-    for rotation in spiral_set(8 * DIRECTIONS).iter().step_by(8) {
+    let rotations = spiral_set(8 * DIRECTIONS);
+    let extremes = rotations.par_iter().step_by(8).flat_map_iter(|rotation| {
         let matrix = rotation.to_rotation_matrix();
-        for axis in 0..3 {
+        (0..3).flat_map(move |axis| {
             let row = matrix.matrix().row(axis).transpose();
             let along = |x: &[f64; 3]| row.dot(&Vector3::from(*x));
             let by = |a: &&[f64; 3], b: &&[f64; 3]| along(a).total_cmp(&along(b));
-            kept.extend(receptor.centers.iter().min_by(by));
-            kept.extend(receptor.centers.iter().max_by(by));
-        }
-    }
+            let centers = receptor.centers.iter();
+            centers
+                .clone()
+                .min_by(by)
+                .into_iter()
+                .chain(centers.max_by(by))
+        })
+    });
+    let mut kept: Vec<[f64; 3]> = extremes.copied().collect();
     kept.sort_unstable_by(|a, b| {
         let order = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
         order.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
