@@ -52,7 +52,7 @@ fn place() -> tempfile::TempDir {
     folder
 }
 
-const SHORT: &str = "--rotations 120 --poses 150 --sharp off --quiet";
+const SHORT: &str = "--rotations 120 --poses 150 --sharp off --write-top 2 --quiet";
 
 fn pose(row: &BTreeMap<String, String>) -> Pose {
     let quaternion = ["qw", "qx", "qy", "qz"].map(|part| number(row, part));
@@ -121,7 +121,7 @@ fn models_of_a_file_are_ranked_together() {
     let folder = place();
     let command = format!(
         "dock receptor.pdb models.pdb --ligand-models all --native-receptor bound_receptor.pdb --native-ligand \
-         bound_ligand.pdb --write-top 4 {SHORT} -o run"
+         bound_ligand.pdb {SHORT} -o run"
     );
     run(folder.path(), &command);
     let directory = folder.path().join("run");

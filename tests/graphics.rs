@@ -27,11 +27,11 @@ fn record(run: &Path) -> Value {
 fn hold_to_cpu(folder: &Path, arguments: &str) {
     run(
         folder,
-        &format!("dock {arguments} --diagnostics -o cpu --quiet"),
+        &format!("dock {arguments} --diagnostics --write-top 0 -o cpu --quiet"),
     );
     run(
         folder,
-        &format!("dock {arguments} --diagnostics -o gpu --engine gpu --quiet"),
+        &format!("dock {arguments} --diagnostics --write-top 0 -o gpu --engine gpu --quiet"),
     );
     let (cpu, gpu) = (rows(&folder.join("cpu")), rows(&folder.join("gpu")));
     let best = cpu

@@ -18,7 +18,8 @@ fn example(name: &str) -> String {
     )
 }
 
-const SHORT: &str = "--rotations 96 --poses 60 --no-cluster --sharp off -o run --force --quiet";
+const SHORT: &str =
+    "--rotations 96 --poses 60 --no-cluster --sharp off --write-top 0 -o run --force --quiet";
 
 /// Docks the example pair into `run`.
 fn dock(folder: &Path, options: &str) -> Vec<Row> {

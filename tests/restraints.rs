@@ -26,7 +26,8 @@ fn dock(folder: &Path, file: &str, text: &str, options: &str) -> Vec<BTreeMap<St
     fs::write(folder.join(file), text).unwrap();
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let mut words = vec!["dock", &receptor, &ligand, "--restraints", file];
-    let always = "--rotations 96 --poses 60 --no-cluster --sharp off -o run --force --quiet";
+    let always =
+        "--rotations 96 --poses 60 --no-cluster --sharp off --write-top 0 -o run --force --quiet";
     words.extend(always.split(' ').chain(options.split_whitespace()));
     succeed(folder, words);
     rows(&folder.join("run"))
@@ -155,7 +156,7 @@ fn restraints_that_no_pose_satisfies_are_warned_of() {
     let (receptor, ligand) = (example("receptor_unbound"), example("ligand_unbound"));
     let said = |file: &str, options: &str| {
         let mut words = vec!["dock", &receptor, &ligand, "--restraints", file];
-        let always = "--rotations 96 --poses 60 --sharp off -o run --force";
+        let always = "--rotations 96 --poses 60 --sharp off --write-top 0 -o run --force";
         words.extend(always.split(' ').chain(options.split_whitespace()));
         let output = succeed(folder.path(), words);
         String::from_utf8(output.stderr).unwrap()

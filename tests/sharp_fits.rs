@@ -10,7 +10,7 @@ use crate::program::succeed;
 use assert_cmd::cargo::cargo_bin_cmd;
 
 const DOCK: &str = "dock receptor.pdb ligand.pdb --rotations 300 --native-receptor native_receptor.pdb \
-                    --native-ligand native_ligand.pdb --quiet";
+                    --native-ligand native_ligand.pdb --write-top 1 --quiet";
 
 /// A folder with trypsin and its inhibitor, bound or unbound, the inhibitor turned; and the known complex.
 fn place(state: &str) -> tempfile::TempDir {

@@ -22,7 +22,7 @@ const FIVE: &str = "name,receptor,ligand,native_receptor,native_ligand\n\
                     e,charged_helices_ligand.pdb,charged_helices_receptor.pdb,,\n";
 /// What the folder of a batch, or of a shard, holds where poses are kept.
 const FILES: [&str; 4] = ["attempts.csv", "batch.json", "poses.csv.gz", "results.csv"];
-const DOCK: &str = "-- --rotations 24 --poses 40 --write-top 2";
+const DOCK: &str = "-- --rotations 24 --poses 40 --write-top 2 --raw";
 /// Options that take hardly any time.
 const SHORT: &str = "-- --rotations 4 --poses 5 --effects shape --threads 1";
 

@@ -38,7 +38,8 @@ fn run(folder: &Path, arguments: &[&str]) -> (String, String) {
 
 /// Docks and returns the JSON object with the bytes of the table.
 fn dock(folder: &Path, receptor: &str, ligand: &str, options: &[&str]) -> (Value, String) {
-    let mut arguments = vec!["dock", receptor, ligand, "-o", "run", "--force", "--json"];
+    let mut arguments = vec!["dock", receptor, ligand];
+    arguments.extend("--write-top 0 -o run --force --json".split(' '));
     arguments.extend(options);
     let (object, _) = run(folder, &arguments);
     let table = fs::read_to_string(folder.join("run/poses.csv")).unwrap();
