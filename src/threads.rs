@@ -8,6 +8,9 @@
 const STACK: usize = 8 << 20;
 
 use knotdock_structures::Error;
+use rayon::prelude::*;
+use std::sync::OnceLock;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Threads that the system could not start.
 fn not_started(count: usize, error: &rayon::ThreadPoolBuildError) -> Error {
@@ -44,6 +47,37 @@ pub fn on<T: Send>(count: usize, work: impl FnOnce() -> T + Send) -> Result<T, E
     Ok(pool.install(work))
 }
 
+/// Results of `count` pieces of work, in their order. The threads of the pool take one after the other, each with a
+/// workspace of its own.
+///
+/// A parallel iterator shares work out in runs: long ones leave threads idle at the end, and each needs a new workspace.
+pub fn each<W, R: Send + Sync>(
+    count: usize,
+    workspace: impl Fn() -> W + Sync,
+    work: impl Fn(usize, &mut W) -> R + Sync,
+) -> Vec<R> {
+    let results: Vec<OnceLock<R>> = (0..count).map(|_| OnceLock::new()).collect();
+    let next = AtomicUsize::new(0);
+    let threads = 0..rayon::current_num_threads().min(count);
+    threads.into_par_iter().with_max_len(1).for_each(|_| {
+        let mut own = workspace();
+        loop {
+            let index = next.fetch_add(1, Ordering::Relaxed);
+            let Some(result) = results.get(index) else {
+                break;
+            };
+            // Each index is taken once.
+            let _ = result.set(work(index, &mut own));
+        }
+    });
+    let results: Vec<R> = results
+        .into_iter()
+        .filter_map(OnceLock::into_inner)
+        .collect();
+    assert_eq!(results.len(), count, "work was left out");
+    results
+}
+
 /// Makes the caller's thread, the main one of a program, a pool by itself and the global one. Work outside of [`on`]
 /// is then done on it alone, and so is work on one thread.
 ///
@@ -60,7 +94,6 @@ pub fn stay_on_main() -> Result<(), Error> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use rayon::prelude::*;
     use std::collections::HashSet;
     use std::thread::{ThreadId, current};
 
@@ -69,6 +102,25 @@ mod tests {
             .into_par_iter()
             .map(|_| current().id())
             .collect()
+    }
+
+    /// Results come in order, whatever a piece takes, and no more workspaces are made than there are threads.
+    #[test]
+    fn each_piece_of_work_is_done_once() {
+        for threads in [1, 3] {
+            for count in [0, 1, 2, 200] {
+                let made = AtomicUsize::new(0);
+                let workspace = || made.fetch_add(1, Ordering::Relaxed);
+                let work = |index: usize, own: &mut usize| {
+                    assert!(*own < threads);
+                    std::thread::sleep(std::time::Duration::from_micros(7 * index as u64 % 50));
+                    index
+                };
+                let found = on(threads, || each(count, workspace, work)).unwrap();
+                assert_eq!(found, Vec::from_iter(0..count));
+                assert!(made.into_inner() <= threads.min(count));
+            }
+        }
     }
 
     /// Work of as many threads as the caller's pool has is done there; other work has new threads.

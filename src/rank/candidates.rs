@@ -3,14 +3,11 @@
 use crate::pose_space::refine::RefinedPose;
 use crate::rank::cluster::{PlacedBody, RigidBody, greedy};
 use crate::rank::sharp::SharpPose;
+use crate::threads;
 use knotdock_scoring::exact::ScoreTerms;
 use knotdock_scoring::peaks::Peak;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::terms::pose::{Rescorer, TermValues, Workspace};
-use rayon::prelude::*;
-
-/// Most poses that a thread rescores at once: those in contact take longer than others.
-const RESCORED_TOGETHER: usize = 4;
 
 /// A pose that may become a row.
 #[derive(Clone, Debug)]
@@ -43,29 +40,24 @@ pub(crate) fn candidates(
     at_start: &[ScoreTerms],
     rescorer: Option<&Rescorer>,
 ) -> Vec<Candidate> {
-    let mut candidates: Vec<Candidate> = Vec::new();
-    peaks
-        .par_iter()
-        .zip(placed)
-        .enumerate()
-        .with_max_len(RESCORED_TOGETHER)
-        .map_init(Workspace::default, |workspace, (index, (peak, placed))| {
-            let pose_terms = rescorer
-                .map(|rescorer| rescorer.score(&placed.pose, workspace))
-                .unwrap_or_default();
-            Candidate {
-                pose: placed.pose,
-                score: placed.score + pose_terms.sum(),
-                pose_terms,
-                start: placed.start,
-                terms: at_start.get(index).copied(),
-                refined: placed.refined,
-                sharp: None,
-                rotation: peak.rotation as usize,
-                score_grid: peak.score,
-            }
-        })
-        .collect_into_vec(&mut candidates);
+    let candidate = |index: usize, workspace: &mut Workspace| {
+        let (peak, placed) = (&peaks[index], &placed[index]);
+        let pose_terms = rescorer
+            .map(|rescorer| rescorer.score(&placed.pose, workspace))
+            .unwrap_or_default();
+        Candidate {
+            pose: placed.pose,
+            score: placed.score + pose_terms.sum(),
+            pose_terms,
+            start: placed.start,
+            terms: at_start.get(index).copied(),
+            refined: placed.refined,
+            sharp: None,
+            rotation: peak.rotation as usize,
+            score_grid: peak.score,
+        }
+    };
+    let mut candidates = threads::each(peaks.len(), Workspace::default, candidate);
     candidates.retain(|candidate| candidate.score.is_finite());
     // The list comes in the order of the grid's scores, which breaks ties.
     candidates.sort_by(|a, b| b.score.total_cmp(&a.score));

@@ -21,11 +21,11 @@ use knotdock_scoring::sharp::{Energy, Optimum, PairList, SharpFit};
 use knotdock_structures::knots::KnotsError;
 use knotdock_structures::molecule::{Atom, Molecule};
 use knotdock_structures::{Knots, PolarAtom};
-use rayon::prelude::*;
 use serde::Serialize;
 
 use self::minimise::{bonds, minimised};
 use crate::side_chains::{HeldResidue, RepackOptions, Repacker};
+use crate::threads;
 
 /// Options of a refinement.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -147,9 +147,9 @@ impl<'a> Refiner<'a> {
 
     /// Refines poses side by side.
     pub fn all(&self, poses: &[Pose]) -> Result<Vec<Refined>, KnotsError> {
-        let refine = |list: &mut PairList, pose: &Pose| self.refine(pose, list);
-        let poses = poses.par_iter().with_max_len(1);
-        poses.map_init(PairList::default, refine).collect()
+        let refine = |index: usize, list: &mut PairList| self.refine(&poses[index], list);
+        let refined = threads::each(poses.len(), PairList::default, refine);
+        refined.into_iter().collect()
     }
 
     /// Refines a pose. Single-threaded; poses may be refined side by side, each thread with its own list.

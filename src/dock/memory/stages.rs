@@ -17,6 +17,7 @@ use knotdock_scoring::potential_grid::PotentialGrid;
 use knotdock_scoring::se3::Pose;
 use knotdock_scoring::so3::{BYTES_RELAXED, MAX_RELAXED};
 use nalgebra::UnitQuaternion;
+use std::sync::OnceLock;
 
 /// Components of the compressed lifted axis that a plan allows for: 7 to 9 in measured runs with all effects on, for
 /// tolerances from 1e-2 to 1e-6.
@@ -44,8 +45,9 @@ const RANKED: u64 = (size_of::<Candidate>()
     + 13 * size_of::<usize>()
     + size_of::<ClusterFigures>()
     + (size_of::<RankedPose>() + size_of::<usize>()) * 3 / 2) as u64;
-/// Bytes of a pose while it is rescored, of which sorting takes half again, and as a row with its quality.
-const RESCORED: u64 = PEAK + (size_of::<RefinedPose>() + size_of::<Candidate>() * 3 / 2) as u64;
+/// Bytes of a pose while it is rescored, when each candidate is there twice, and as a row with its quality.
+const RESCORED: u64 = PEAK
+    + (size_of::<RefinedPose>() + size_of::<Candidate>() + size_of::<OnceLock<Candidate>>()) as u64;
 const WRITTEN: u64 = (size_of::<RankedPose>() + size_of::<(usize, Pose)>()) as u64 + 384;
 const _: () = assert!(RANKED >= RESCORED && RANKED >= WRITTEN);
 /// Bytes of a thread: its stack, and buffers that its allocator keeps.

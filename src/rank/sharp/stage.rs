@@ -5,6 +5,7 @@ use super::evidence::{Evidence, REQUESTED, SCORE_PER_RT, SharpFinding};
 use crate::options::SharpChoice;
 use crate::rank::candidates::Candidate;
 use crate::rank::cluster::{RigidBody, greedy};
+use crate::threads;
 use knotdock_scoring::exact_sum::ExactSum;
 use knotdock_scoring::sharp::{Optimum, PairList, SharpFit};
 use knotdock_scoring::terms::pose::{Rescorer, Workspace};
@@ -48,31 +49,23 @@ pub(crate) fn optima(
 ) -> Optima {
     let fit = SharpFit::new(inputs.bodies, inputs.polar);
     let best = candidates.get(..DESCENDING).unwrap_or(candidates);
-    let mut of_candidates: Vec<Option<Optimum>> = Vec::new();
-    best.par_iter()
-        .with_max_len(1)
-        .map_init(PairList::default, |list, candidate| {
-            fit.descend(&candidate.pose, list)
-        })
-        .collect_into_vec(&mut of_candidates);
+    let descended = |index: usize, list: &mut PairList| fit.descend(&best[index].pose, list);
+    let mut of_candidates = threads::each(best.len(), PairList::default, descended);
     let mut firsts = first_of_places(&of_candidates, body);
     let may_stand_out = evidence_of(&firsts, rotations)
         .is_some_and(|evidence| evidence.margin() > evidence.needed - MOST_GAIN);
     if !may_stand_out && choice != SharpChoice::On {
         firsts.clear();
     }
-    let tried: Vec<(usize, Optimum)> = firsts
-        .get(..MAX_TRIED)
-        .unwrap_or(&firsts)
-        .par_iter()
-        .with_max_len(1)
-        .map_init(PairList::default, |list, &(index, first)| {
-            let near = fit.best_near(&first.pose, list);
-            let better = near.filter(|near| near.energy.total() < first.energy.total());
-            (index, better.unwrap_or(first))
-        })
-        .collect();
-    for (index, optimum) in tried {
+    firsts.truncate(MAX_TRIED);
+    let tried = |place: usize, list: &mut PairList| {
+        let first = firsts[place].1;
+        let near = fit.best_near(&first.pose, list);
+        let better = near.filter(|near| near.energy.total() < first.energy.total());
+        better.unwrap_or(first)
+    };
+    let tried = threads::each(firsts.len(), PairList::default, tried);
+    for ((index, _), optimum) in firsts.into_iter().zip(tried) {
         of_candidates[index] = Some(optimum);
     }
     Optima {
