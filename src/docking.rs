@@ -168,11 +168,13 @@ impl Run {
         let molecules = self.molecules.each_ref();
         let kind = (molecules, self.options.search.symmetry.into());
         let rows = std::slice::from_ref(row);
-        let top = TopComplexes::new(Bodies::Molecules(molecules), rows, &self.options)?;
-        match PosedPair::of(kind, (rows, top.refined())).first() {
-            Some(pair) => complex(pair),
-            None => unreachable!("a row gives a pair"),
-        }
+        self.on_threads(|| {
+            let top = TopComplexes::new(Bodies::Molecules(molecules), rows, &self.options)?;
+            match PosedPair::of(kind, (rows, top.refined())).first() {
+                Some(pair) => complex(pair),
+                None => unreachable!("a row gives a pair"),
+            }
+        })
     }
 
     /// The complexes that are written.
@@ -182,9 +184,8 @@ impl Run {
         }
         let rows = pose_rows(&self.outcome.poses);
         let bodies = Bodies::Molecules(self.molecules.each_ref());
-        let made = threads::on(self.options.machine.thread_count(), || {
-            TopComplexes::new(bodies, self.options.output.top(&rows), &self.options)
-        })??;
+        let rows = self.options.output.top(&rows);
+        let made = self.on_threads(|| TopComplexes::new(bodies, rows, &self.options))?;
         Ok(self.top.get_or_init(|| made))
     }
 
@@ -220,11 +221,19 @@ impl Run {
         staging.commit()
     }
 
-    /// Hands the parts of the run to a function.
-    fn finished<T>(
+    /// Does work on the threads of the options.
+    fn on_threads<T: Send>(
+        &self,
+        work: impl FnOnce() -> Result<T, Error> + Send,
+    ) -> Result<T, Error> {
+        threads::on(self.options.machine.thread_count(), work)?
+    }
+
+    /// Hands the parts of the run to a function, on the threads of the options.
+    fn finished<T: Send>(
         &self,
         top: &TopComplexes,
-        read: impl FnOnce(FinishedRun<'_>) -> Result<T, Error>,
+        read: impl FnOnce(FinishedRun<'_>) -> Result<T, Error> + Send,
     ) -> Result<T, Error> {
         let (plan, outcome) = (&self.prepared.plan, &self.outcome);
         let [receptor, ligand] = self
@@ -240,7 +249,7 @@ impl Run {
         let further: Vec<_> = met.into_iter().chain(top.clashes()).collect();
         let molecules = self.molecules.each_ref();
         let arrangement = self.options.search.symmetry.into();
-        let mut run = FinishedRun {
+        let run = FinishedRun {
             bodies: Bodies::Molecules(molecules),
             inputs: &inputs,
             options: &self.options,
@@ -254,10 +263,14 @@ impl Run {
             chosen: None,
             clock: &self.clock,
         };
-        let shown = run.table().first(MAX_ROWS);
-        let ph = self.options.terms.ph;
-        let contacts = RunContacts::of(molecules, &shown, arrangement, ph);
-        run.contacts = Some(&contacts);
-        read(run)
+        self.on_threads(|| {
+            let shown = run.table().first(MAX_ROWS);
+            let ph = self.options.terms.ph;
+            let contacts = RunContacts::of(molecules, &shown, arrangement, ph);
+            read(FinishedRun {
+                contacts: Some(&contacts),
+                ..run
+            })
+        })
     }
 }
