@@ -3,7 +3,7 @@
 use crate::output::files::file_error;
 use knotdock_structures::Error;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use knotdock_scoring::se3::Pose;
 use knotdock_structures::molecule::{
@@ -165,7 +165,7 @@ pub fn write_complexes(
             pair.text(format, &path)
                 .map(|(text, chains)| (path, text, chains))
         });
-        let texts: Vec<Result<(PathBuf, Vec<u8>, ChainMap), Error>> = texts.collect();
+        let texts: Vec<Result<_, Error>> = texts.collect();
         for made in texts {
             let (path, text, map) = made?;
             let written = write_new(&path, |file| file.write_all(&text));
