@@ -160,6 +160,25 @@ def test_other_threads_of_python_run_meanwhile(helices, options):
     assert len(ticks) > 5
 
 
+@pytest.mark.skipif(not os.path.isdir("/proc/self/task"), reason="threads are counted on Linux alone")
+def test_no_thread_outlives_its_work(helices, options, tmp_path):
+    """Rayon's global pool would: nothing may start it, neither a docking nor what is asked of its run."""
+    code = (
+        "import knotdock, os, time\n"
+        "threads = lambda: len(os.listdir('/proc/self/task'))\n"
+        "before = threads()\n"
+        f"molecules = [knotdock.Molecule.read(file) for file in {helices!r}]\n"
+        f"run = knotdock.dock(*molecules, **{options!r})\n"
+        f"run.record, run.complex(1), run.save({str(tmp_path / 'run')!r})\n"
+        "end = time.monotonic() + 20\n"
+        "while threads() > before and time.monotonic() < end:\n"
+        "    time.sleep(0.01)\n"
+        "print(threads() - before)\n"
+    )
+    done = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True)
+    assert done.stdout == "0\n", done
+
+
 def test_help_shows_every_option():
     for option in knotdock.options():
         assert f"{option['name']}" in knotdock.dock.__doc__

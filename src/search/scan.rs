@@ -96,10 +96,9 @@ struct Attempt<'a> {
 
 impl<'a> Attempt<'a> {
     fn new(progress: &'a dyn Progress, shown: &'a AtomicU64) -> Self {
-        let done = AtomicU64::new(0);
         Self {
             progress,
-            done,
+            done: AtomicU64::new(0),
             shown,
         }
     }

@@ -70,15 +70,11 @@ fn outermost(receptor: &Knots) -> Vec<[f64; 3]> {
             let row = matrix.matrix().row(axis).transpose();
             let along = |x: &[f64; 3]| row.dot(&Vector3::from(*x));
             let by = |a: &&[f64; 3], b: &&[f64; 3]| along(a).total_cmp(&along(b));
-            let centers = receptor.centers.iter();
-            centers
-                .clone()
-                .min_by(by)
-                .into_iter()
-                .chain(centers.max_by(by))
+            let centers = || receptor.centers.iter();
+            [centers().min_by(by), centers().max_by(by)]
         })
     });
-    let mut kept: Vec<[f64; 3]> = extremes.copied().collect();
+    let mut kept: Vec<[f64; 3]> = extremes.flatten_iter().copied().collect();
     kept.sort_unstable_by(|a, b| {
         let order = a.iter().zip(b).map(|(a, b)| a.total_cmp(b));
         order.fold(std::cmp::Ordering::Equal, std::cmp::Ordering::then)
